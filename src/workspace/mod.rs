@@ -1,0 +1,9 @@
+//! Workspaces before and after a failure: W₀, W_i, W_F, and their sizes with error bars.
+
+mod limits;
+mod map;
+mod size;
+
+pub use limits::{ArtificialLimits, FailureSet, JointLimit};
+pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
+pub use size::{Estimate, WorkspaceSizes};
