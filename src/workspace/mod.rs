@@ -2,6 +2,7 @@
 
 mod limits;
 mod map;
+pub mod planar;
 mod size;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
