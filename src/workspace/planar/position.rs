@@ -72,6 +72,16 @@ impl PlanarPosition {
         annulus_area(annulus(lengths))
     }
 
+    /// Size of W₁: what stays reachable wherever within `limit` joint 1 locks, m².
+    pub fn locked_joint_1_size(lengths: &[f64], limit: JointLimit) -> Estimate {
+        let only = Parts {
+            pre_failure: false,
+            joint_1: Some(LockedJoint1::new(lengths, limit)),
+            radii: annulus(lengths),
+        };
+        PlanarPosition::new().area(only)
+    }
+
     /// All sizes, m², each with an error estimate: round-off plus any disagreement between the
     /// panels and a direct classification at two radii of every panel.
     pub fn sizes(&mut self, arm: PlanarArm<'_>) -> WorkspaceSizes {
@@ -84,12 +94,7 @@ impl PlanarPosition {
         let post_failure = (1..=arm.lengths.len()).map(|joint| {
             let limit = arm.limits.joints()[joint - 1];
             if joint == 1 {
-                let only = Parts {
-                    pre_failure: false,
-                    joint_1: Some(LockedJoint1::new(arm.lengths, limit)),
-                    radii: unrestricted,
-                };
-                self.area(only)
+                PlanarPosition::locked_joint_1_size(arm.lengths, limit)
             } else {
                 exact(annulus_area(locked_joint_radii(arm.lengths, joint, limit)))
             }
@@ -368,8 +373,7 @@ impl SubPanels {
         for (k, circle) in self.circles.iter().enumerate() {
             for other in &self.circles[..k] {
                 let crossings = circle.crossing_radii(other).into_iter().flatten();
-                let within =
-                    crossings.filter(|&r| inner + tolerance < r && r < outer - tolerance);
+                let within = crossings.filter(|&r| inner + tolerance < r && r < outer - tolerance);
                 self.radii.extend(within);
             }
         }

@@ -5,7 +5,7 @@
 //! joint 1 leaves the annulus of links 2 … n around joint 2, so W₁ is an erosion of arcs.
 
 use super::circle::{Circle, Side};
-use crate::angle::{Arc, AngleSet};
+use crate::angle::{AngleSet, Arc};
 use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
@@ -46,7 +46,11 @@ fn rigid_link_range(a: f64, b: f64, limit: JointLimit) -> [f64; 2] {
     let folded = arc.contains(PI);
     let stretched = arc.contains(0.0);
     [
-        if folded { (a - b).abs() } else { lower.min(upper) },
+        if folded {
+            (a - b).abs()
+        } else {
+            lower.min(upper)
+        },
         if stretched { a + b } else { lower.max(upper) },
     ]
 }

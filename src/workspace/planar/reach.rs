@@ -2,7 +2,7 @@
 
 use super::chain::MovingChain;
 use super::region::{Carrier, Region};
-use crate::angle::{AngleSet, Arc};
+use crate::angle::AngleSet;
 use crate::workspace::{ArtificialLimits, JointLimit};
 
 /// W₀ in polar form. Reusable: rebuilding keeps the buffers.
@@ -55,6 +55,12 @@ impl PreFailure {
         self.depth.checked_sub(1).map(|top| &self.tails[top])
     }
 
+    /// W₀(r) at one radius from the panels.
+    pub fn set_at(&self, r: f64) -> AngleSet {
+        let tail = self.tail().map(|tail| tail.set_at(r));
+        tail.unwrap_or_default().sum(&self.joint_1().arc())
+    }
+
     /// W₀(r) at one radius by direct classification, independent of the panels.
     pub fn rotation_set(&self, scratch: &mut Region, r: f64) -> AngleSet {
         let joint_1 = self.joint_1().arc();
@@ -63,22 +69,16 @@ impl PreFailure {
 
     /// E(r) at one radius by direct classification.
     pub fn tail_set(&self, scratch: &mut Region, r: f64) -> AngleSet {
-        let arcs = match self.depth {
-            0 => Some(Vec::new()),
-            1 => Some(self.tails[0].arcs_by_panel(r)),
+        match self.depth {
+            0 => AngleSet::empty(),
+            1 => self.tails[0].set_at(r),
             depth => {
                 let carrier = Carrier {
                     length: self.chain.lengths[0],
                     limit: self.chain.limits[1],
                     tail: &self.tails[depth - 2],
                 };
-                carrier.arcs_at(scratch, r)
-            }
-        };
-        match arcs {
-            None => AngleSet::full(),
-            Some(arcs) => {
-                AngleSet::from_arcs(arcs.iter().map(|&(start, width)| Arc::new(start, width)))
+                carrier.set_at(scratch, r)
             }
         }
     }

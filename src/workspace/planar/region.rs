@@ -12,6 +12,7 @@
 
 use super::circle::{Circle, Side};
 use super::sweep::{CellSweep, Edge, EdgeArc};
+use crate::angle::{AngleSet, Arc};
 use crate::workspace::JointLimit;
 use nalgebra::Complex;
 use std::ops::Range;
@@ -96,11 +97,19 @@ impl Region {
         self.panels.get(k).filter(|panel| panel.inner <= r)
     }
 
-    /// Start and width of the arcs of a region without full circles, at radius `r`.
-    pub fn arcs_by_panel(&self, r: f64) -> Vec<(f64, f64)> {
-        let panel = self.panel_at(r);
-        let arcs = panel.map_or(&[][..], |panel| self.arcs_of(panel));
-        arcs.iter().map(|arc| arc.at(&self.circles, r)).collect()
+    /// E(r) from the panel that holds `r`.
+    pub fn set_at(&self, r: f64) -> AngleSet {
+        match self.panel_at(r) {
+            None => AngleSet::empty(),
+            Some(panel) if panel.full => AngleSet::full(),
+            Some(panel) => {
+                let arcs = self.arcs_of(panel).iter();
+                AngleSet::from_arcs(arcs.map(|arc| {
+                    let (start, width) = arc.at(&self.circles, r);
+                    Arc::new(start, width)
+                }))
+            }
+        }
     }
 
     fn clear(&mut self) {
@@ -326,21 +335,14 @@ impl Carrier<'_> {
         })
     }
 
-    /// Arcs of E at one radius by direct classification, without the panels of radii: start and
-    /// width of each, or None for the full circle. An independent check of the panels.
-    pub fn arcs_at(&self, scratch: &mut Region, r: f64) -> Option<Vec<(f64, f64)>> {
+    /// E at one radius by direct classification, without the panels of radii: an independent
+    /// check of [`Region::set_at`].
+    pub fn set_at(&self, scratch: &mut Region, r: f64) -> AngleSet {
         scratch.clear();
         scratch.reach = self.length + self.tail.reach;
         scratch.collect_circles(*self);
         scratch.classify_panel(*self, r, r);
-        match scratch.panels.first() {
-            None => Some(Vec::new()),
-            Some(panel) if panel.full => None,
-            Some(panel) => {
-                let arcs = scratch.arcs_of(panel).iter();
-                Some(arcs.map(|arc| arc.at(&scratch.circles, r)).collect())
-            }
-        }
+        scratch.set_at(r)
     }
 }
 
