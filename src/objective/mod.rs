@@ -1,0 +1,21 @@
+//! What is maximised: design vectors and their scores.
+
+mod design_vector;
+mod planar;
+mod space;
+
+pub use design_vector::{Design, DesignSpace};
+pub use planar::{PlanarObjective, PlanarTask};
+pub use space::{SearchSpace, Variable};
+
+/// A score to maximise over a box.
+///
+/// Scores are finite and never NaN; the worst is 0. The same point gives the same score on every
+/// thread.
+pub trait Objective: Sync {
+    /// The box.
+    fn space(&self) -> &SearchSpace;
+
+    /// The score of a point of the box.
+    fn score(&self, x: &[f64]) -> f64;
+}

@@ -1,0 +1,17 @@
+//! Search methods on a box, as argmin solvers. They know scores and coordinates, nothing of robots.
+//!
+//! argmin minimises, so costs are negated scores; everything public here speaks of scores, which
+//! are maximised.
+
+mod coordinate_ascent;
+mod genetic;
+mod line_search;
+mod problem;
+mod search;
+
+pub use coordinate_ascent::{CoordinateAscent, CoordinateAscentSettings};
+pub use genetic::{Genetic, GeneticSettings};
+pub use problem::Maximise;
+pub use search::{
+    Candidate, Control, HistoryPoint, OnProgress, OnSnapshot, Search, SearchState, Snapshot, run_search,
+};
