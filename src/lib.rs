@@ -1,7 +1,17 @@
 //! Designs redundant robot arms whose workspace survives a locked joint.
+//!
+//! Data flows through the modules in this order, and a module imports only from those before it:
+//! [`design`] → [`kinematics`] → [`workspace`] → [`objective`] → [`optimiser`] → [`report`] →
+//! [`study`] → [`cli`]. [`angle`], [`sampling`] and [`diagnostic`] serve all of them.
 
 pub mod angle;
+pub mod cli;
+pub mod design;
+pub mod diagnostic;
+pub mod kinematics;
 pub mod objective;
 pub mod optimiser;
+pub mod report;
 pub mod sampling;
+pub mod study;
 pub mod workspace;

@@ -1,1 +1,5 @@
-fn main() {}
+//! The `faultspace` command.
+
+fn main() -> std::process::ExitCode {
+    faultspace::cli::main()
+}

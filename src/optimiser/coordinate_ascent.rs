@@ -392,10 +392,7 @@ impl Search for CoordinateAscent {
     fn converged(&self) -> bool {
         let best = self.best().map(|b| b.score);
         let of_best = |c: &&Climber| Some(c.best.score) == best;
-        self.climbers
-            .iter()
-            .filter(of_best)
-            .any(|c| c.converged)
+        self.climbers.iter().filter(of_best).any(|c| c.converged)
     }
 
     fn progress(&self) -> f64 {

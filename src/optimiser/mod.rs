@@ -13,5 +13,6 @@ pub use coordinate_ascent::{CoordinateAscent, CoordinateAscentSettings};
 pub use genetic::{Genetic, GeneticSettings};
 pub use problem::Maximise;
 pub use search::{
-    Candidate, Control, HistoryPoint, OnProgress, OnSnapshot, Search, SearchState, Snapshot, run_search,
+    Candidate, Control, HistoryPoint, OnProgress, OnSnapshot, Search, SearchState, Snapshot,
+    run_search,
 };

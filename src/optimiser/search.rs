@@ -150,7 +150,6 @@ impl<S: Search> Checkpoint<S, SearchState> for Hooks<S> {
     }
 }
 
-
 /// The objective behind argmin's problem.
 pub(super) fn objective<'p>(
     problem: &mut argmin::core::Problem<Maximise<'p>>,

@@ -2,6 +2,7 @@
 
 mod chain;
 mod circle;
+mod maps;
 mod orientation;
 mod pose;
 mod position;

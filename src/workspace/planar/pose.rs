@@ -42,6 +42,19 @@ impl Default for PoseResolution {
 }
 
 impl PoseResolution {
+    /// Settings that keep the error of most workspaces within the relative `tolerance`: the error
+    /// of the bearings and slices falls with the square of their number.
+    pub fn for_tolerance(tolerance: f64) -> PoseResolution {
+        let default = PoseResolution::default();
+        let finer = (1e-3 / tolerance).sqrt().clamp(0.5, 16.0);
+        PoseResolution {
+            tolerance: 0.3 * tolerance,
+            bearings: (default.bearings as f64 * finer).ceil() as usize,
+            slices: (default.slices as f64 * finer).ceil() as usize,
+            max_panels: (default.max_panels as f64 * finer).ceil() as usize,
+        }
+    }
+
     /// Coarse settings for a search whose winner is scored again: about 1 % in a third of the time.
     pub fn coarse() -> PoseResolution {
         PoseResolution {
@@ -173,6 +186,9 @@ impl PlanarPose {
         let step = TAU / bearings as f64;
         let row = |&r: &f64| {
             let (beta, gamma) = self.outer_sets(parts, r);
+            if !beta.is_empty() {
+                self.refresh_table(&wrist, r);
+            }
             let directions = (!beta.is_empty()).then(|| self.directions(&wrist, parts, r));
             let at = |k: usize| {
                 let angle = -std::f64::consts::PI + (k as f64 + 0.5) * step;

@@ -1,0 +1,267 @@
+//! Lines of text in a figure: subscripts, fitting into a width, legends.
+
+use super::canvas::{Canvas, Lettering};
+use super::font;
+use super::raster::Point;
+use super::style::{HALF_CAPITAL, INK, SMALL, WHITE};
+use plotters::style::RGBAColor;
+use plotters::style::text_anchor::HPos;
+
+/// Size of a subscript in units of its line's, and its drop below the base line.
+const SUBSCRIPT: (f64, f64) = (0.72, 0.2);
+
+/// A line of text; `_` before a character sets that character as a subscript: "W_F".
+#[derive(Clone, Copy)]
+pub(super) struct Label<'t> {
+    pub text: &'t str,
+    pub size: f64,
+    pub bold: bool,
+    pub colour: RGBAColor,
+    pub align: HPos,
+    pub upright: bool,
+}
+
+impl<'t> Label<'t> {
+    /// Ink-coloured text of the given size in points, starting at its point.
+    pub(super) fn new(text: &'t str, size: f64) -> Label<'t> {
+        Label {
+            text,
+            size,
+            bold: false,
+            colour: INK,
+            align: HPos::Left,
+            upright: false,
+        }
+    }
+
+    pub(super) fn align(self, align: HPos) -> Label<'t> {
+        Label { align, ..self }
+    }
+
+    pub(super) fn bold(self) -> Label<'t> {
+        Label { bold: true, ..self }
+    }
+
+    pub(super) fn colour(self, colour: RGBAColor) -> Label<'t> {
+        Label { colour, ..self }
+    }
+
+    pub(super) fn upright(self) -> Label<'t> {
+        Label {
+            upright: true,
+            ..self
+        }
+    }
+
+    /// Draws with the base line at `at`, smaller if need be to stay within `width` points.
+    pub(super) fn draw_within(self, canvas: &mut Canvas, at: Point, width: f64) {
+        let (text, size) = fitted(&self, width);
+        Label {
+            text: &text,
+            size,
+            ..self
+        }
+        .draw(canvas, at);
+    }
+
+    /// Draws with the base line at `at`.
+    pub(super) fn draw(self, canvas: &mut Canvas, at: Point) {
+        let runs = runs(self.text);
+        let width = self.width();
+        // A line in one piece keeps its own anchor, which is exact for any font.
+        if let [(text, false)] = runs.as_slice() {
+            canvas.text(text, at, &self.lettering(self.size, self.align));
+            return;
+        }
+        let mut along = match self.align {
+            HPos::Left => 0.0,
+            HPos::Center => -0.5 * width,
+            HPos::Right => -width,
+        };
+        for (run, is_subscript) in &runs {
+            let (scale, drop) = if *is_subscript { SUBSCRIPT } else { (1.0, 0.0) };
+            let (size, drop) = (scale * self.size, drop * self.size);
+            // SVG drops spaces at the start of a text.
+            let text = run.trim_start_matches(' ');
+            along += size * (font::width(run, self.bold) - font::width(text, self.bold));
+            let place = if self.upright {
+                [at[0] + drop, at[1] - along]
+            } else {
+                [at[0] + along, at[1] + drop]
+            };
+            canvas.text(text, place, &self.lettering(size, HPos::Left));
+            along += size * font::width(text, self.bold);
+        }
+    }
+
+    /// Width in points.
+    pub(super) fn width(&self) -> f64 {
+        let width = |(text, is_subscript): &(String, bool)| {
+            let scale = if *is_subscript { SUBSCRIPT.0 } else { 1.0 };
+            scale * self.size * font::width(text, self.bold)
+        };
+        runs(self.text).iter().map(width).sum()
+    }
+
+    fn lettering(&self, size: f64, align: HPos) -> Lettering {
+        Lettering {
+            size,
+            bold: self.bold,
+            colour: self.colour,
+            align,
+            upright: self.upright,
+        }
+    }
+}
+
+/// Splits "size S_F (m²)" into ("size S", ordinary), ("F", subscript), (" (m²)", ordinary).
+fn runs(text: &str) -> Vec<(String, bool)> {
+    let mut runs: Vec<(String, bool)> = Vec::new();
+    let mut characters = text.chars().peekable();
+    let mut after_letter = false;
+    while let Some(c) = characters.next() {
+        let next = characters.peek().copied();
+        if c == '_' && after_letter && next.is_some_and(|n| n.is_alphanumeric()) {
+            runs.extend(characters.next().map(|n| (n.to_string(), true)));
+            after_letter = false;
+            continue;
+        }
+        after_letter = c.is_alphabetic();
+        match runs.last_mut() {
+            Some((run, false)) => run.push(c),
+            _ => runs.push((c.to_string(), false)),
+        }
+    }
+    runs
+}
+
+/// The text and size that stay within `width`: down to 70 % in size, then cut with an ellipsis.
+fn fitted(label: &Label, width: f64) -> (String, f64) {
+    let own = label.width();
+    if own <= width {
+        return (label.text.to_string(), label.size);
+    }
+    let size = label.size * (width / own).max(0.7);
+    let mut text = label.text.to_string();
+    while !text.is_empty() {
+        let line = format!("{text}…");
+        let candidate = Label {
+            text: &line,
+            size,
+            ..*label
+        };
+        let whole = Label {
+            text: &text,
+            size,
+            ..*label
+        };
+        if text == label.text && whole.width() <= width * 1.001 {
+            return (text, size);
+        }
+        if candidate.width() <= width {
+            return (line, size);
+        }
+        text.pop();
+    }
+    (text, size)
+}
+
+/// What a legend shows beside its text.
+#[derive(Clone, Copy, Debug)]
+pub(super) enum Swatch {
+    Area(RGBAColor, RGBAColor),
+    Line(RGBAColor),
+    /// A link with a joint.
+    Arm(RGBAColor),
+    Dashed(RGBAColor),
+}
+
+/// Height of one row of a legend, points.
+pub(super) const LEGEND_ROW: f64 = 10.0;
+
+/// Draws legend entries in `columns` columns over `width` points, the first row's middle at
+/// `at`.
+pub(super) fn legend(
+    canvas: &mut Canvas,
+    at: Point,
+    width: f64,
+    columns: usize,
+    entries: &[(Swatch, &str)],
+) {
+    let columns = columns.max(1);
+    let step = width / columns as f64;
+    for (k, (swatch, text)) in entries.iter().enumerate() {
+        let x = at[0] + (k % columns) as f64 * step;
+        let y = at[1] + (k / columns) as f64 * LEGEND_ROW;
+        draw_swatch(canvas, *swatch, [x, y]);
+        let base = y + HALF_CAPITAL * SMALL;
+        Label::new(text, SMALL).draw_within(canvas, [x + 16.0, base], step - 18.0);
+    }
+}
+
+fn draw_swatch(canvas: &mut Canvas, swatch: Swatch, [x, y]: Point) {
+    match swatch {
+        Swatch::Area(fill, edge) => {
+            let corners = rectangle(x, y - 3.0, 12.0, 6.0);
+            canvas.fill(&corners, fill);
+            canvas.outline(&corners, 0.5, edge);
+        }
+        Swatch::Line(colour) => canvas.stroke(&[[x, y], [x + 12.0, y]], 1.5, colour),
+        Swatch::Arm(colour) => {
+            canvas.stroke(&[[x, y], [x + 12.0, y]], 1.7, colour);
+            canvas.disc([x + 6.0, y], 2.7, colour);
+            canvas.disc([x + 6.0, y], 1.7, WHITE);
+        }
+        Swatch::Dashed(colour) => dashed(canvas, [x, y], [x + 12.0, y], 0.8, colour),
+    }
+}
+
+/// The corners of a rectangle.
+pub(super) fn rectangle(x: f64, y: f64, width: f64, height: f64) -> [Point; 4] {
+    [
+        [x, y],
+        [x + width, y],
+        [x + width, y + height],
+        [x, y + height],
+    ]
+}
+
+/// A dashed straight line.
+pub(super) fn dashed(canvas: &mut Canvas, from: Point, to: Point, width: f64, colour: RGBAColor) {
+    let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+    let dashes = (length / 4.5).ceil().clamp(1.0, 500.0) as usize;
+    let point = |s: f64| {
+        let t = s / dashes as f64;
+        [
+            from[0] + t * (to[0] - from[0]),
+            from[1] + t * (to[1] - from[1]),
+        ]
+    };
+    for k in 0..dashes {
+        canvas.stroke(
+            &[point(k as f64 + 0.15), point(k as f64 + 0.65)],
+            width,
+            colour,
+        );
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn subscripts_follow_a_letter() {
+        let whole = runs("size S_F (m²)");
+        assert_eq!(
+            whole,
+            [
+                ("size S".into(), false),
+                ("F".into(), true),
+                (" (m²)".into(), false)
+            ]
+        );
+        assert_eq!(runs("_x 1_2 a_"), [("_x 1_2 a_".into(), false)]);
+        assert!(runs("").is_empty());
+    }
+}

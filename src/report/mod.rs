@@ -1,0 +1,50 @@
+//! Figures, tables and result files of a study.
+//!
+//! This room draws result types and never computes results: what a [`Report`] holds comes ready
+//! from the study. Every figure is a [`Figure`]: a drawing in printed points that the same code
+//! puts on a PNG (1600 pixels wide) or an SVG, and the table behind it as CSV. Files are written
+//! whole or not at all, and the same input gives the same bytes.
+//!
+//! [`write_report`] writes everything; [`write_figure`], [`write_json`] and [`write_text`] write
+//! single files.
+
+mod arm;
+mod canvas;
+mod convergence;
+mod error;
+mod figure;
+mod font;
+mod html;
+mod label;
+mod limits_figure;
+mod number;
+mod panel;
+mod png;
+mod polar;
+mod raster;
+mod result_files;
+mod rings;
+mod sensitivity;
+mod shares;
+mod sizes_figure;
+mod style;
+mod table;
+#[cfg(test)]
+mod tests;
+mod ticks;
+mod workspace_figure;
+mod write;
+
+pub use canvas::{Canvas, Size};
+pub use convergence::{Convergence, ConvergencePoint};
+pub use error::ReportError;
+pub use figure::{Figure, Format, figure_png, figure_svg, write_figure};
+pub use html::{InlineFigure, page};
+pub use limits_figure::LimitsFigure;
+pub use number::{degrees, estimate, percentage, plain, unit, with_error};
+pub use result_files::{write_bytes, write_json, write_text};
+pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};
+pub use sizes_figure::SizesFigure;
+pub use table::Table;
+pub use workspace_figure::WorkspaceFigure;
+pub use write::{Report, write_report};

@@ -1,0 +1,262 @@
+//! The fault-tolerant workspace seen from above, with the arm and its limits [S3 Fig. 5–8,
+//! S4 Fig. 3b].
+
+use super::arm::Arm;
+use super::canvas::{Canvas, Size};
+use super::figure::Figure;
+use super::label::{LEGEND_ROW, Label, Swatch, legend};
+use super::panel::{BOTTOM, LEFT, Panel};
+use super::polar;
+use super::rings;
+use super::shares;
+use super::style::{
+    COLUMN, GREY, INK, MARGIN, ORANGE, PALE, SKY, TITLE, VERMILLION, WHITE, translucent,
+};
+use super::table::{Table, cell};
+use super::ticks;
+use crate::workspace::{ArtificialLimits, RingMap, ShareMap, WorkspaceMap};
+use plotters::style::RGBAColor;
+use plotters::style::text_anchor::HPos;
+use std::f64::consts::TAU;
+
+/// Space right of the plot for the colour bar of a pose task, points.
+const BAR: f64 = 47.0;
+
+/// A planar robot's workspace map with the robot on it.
+#[derive(Clone, Debug)]
+pub struct WorkspaceFigure<'a> {
+    /// The map to draw, metres.
+    pub map: &'a WorkspaceMap,
+    /// Artificial limits, drawn at the joints.
+    pub limits: &'a ArtificialLimits,
+    /// Lengths of the links, metres.
+    pub links: &'a [f64],
+    /// Joint angles at which the arm is drawn, radians.
+    pub arm_angles: Vec<f64>,
+    /// Title above the plot; none if empty.
+    pub title: String,
+}
+
+impl Figure for WorkspaceFigure<'_> {
+    fn name(&self) -> &'static str {
+        "workspace"
+    }
+
+    fn caption(&self) -> String {
+        let what = match self.map {
+            WorkspaceMap::Rings(_) => {
+                "Fault-tolerant workspace W_F (blue) within the unrestricted workspace (grey)"
+            }
+            WorkspaceMap::Shares(_) => {
+                "Share of tool orientations that are fault tolerant at every tool position (colour) \
+                 within the unrestricted workspace (grey)"
+            }
+        };
+        format!(
+            "{what}, seen from above. The wedges show the artificial joint limits, each about the \
+             direction of the previous link."
+        )
+    }
+
+    fn size(&self) -> Size {
+        Size {
+            width: COLUMN,
+            height: self.head() + self.side() + BOTTOM,
+        }
+    }
+
+    fn draw(&self, canvas: &mut Canvas) {
+        let reach = self.reach();
+        let panel = Panel {
+            left: LEFT,
+            top: self.head(),
+            width: self.side(),
+            height: self.side(),
+            x: [-reach, reach],
+            y: [-reach, reach],
+        };
+        let title = Label::new(&self.title, TITLE).bold().align(HPos::Center);
+        title.draw_within(canvas, [0.5 * COLUMN, 10.0], COLUMN - 2.0 * MARGIN);
+        self.draw_legend(canvas);
+        match self.map {
+            WorkspaceMap::Rings(map) => draw_rings(canvas, &panel, map),
+            WorkspaceMap::Shares(map) => draw_shares(canvas, &panel, map),
+        }
+        if self.is_empty() {
+            panel.remark(canvas, "W_F is empty");
+        }
+        let arm = Arm::new(self.links, &self.arm_angles);
+        arm.draw(canvas, &panel, self.limits, self.wedge());
+        let ticks = ticks::round(-reach, reach, 5);
+        panel.axes(canvas, &ticks, &ticks, true);
+        panel.x_label(canvas, "x (m)");
+        panel.y_label(canvas, "y (m)", &ticks);
+    }
+
+    fn table(&self) -> Table {
+        match self.map {
+            WorkspaceMap::Rings(map) => ring_table(map),
+            WorkspaceMap::Shares(map) => share_table(map),
+        }
+    }
+}
+
+impl WorkspaceFigure<'_> {
+    /// Whether no point is fault tolerant.
+    fn is_empty(&self) -> bool {
+        match self.map {
+            WorkspaceMap::Rings(map) => map.rings.iter().all(|ring| ring.rotation_set.is_empty()),
+            WorkspaceMap::Shares(map) => !map.share.iter().any(|share| *share > 0.0),
+        }
+    }
+
+    /// Side of the square plot, points.
+    fn side(&self) -> f64 {
+        let right = match self.map {
+            WorkspaceMap::Rings(_) => MARGIN + 2.0,
+            WorkspaceMap::Shares(_) => BAR,
+        };
+        COLUMN - LEFT - right
+    }
+
+    /// Height of title and legend above the plot, points.
+    fn head(&self) -> f64 {
+        let title = if self.title.is_empty() { 0.0 } else { 12.0 };
+        title + 2.0 * LEGEND_ROW + MARGIN + 2.0
+    }
+
+    /// Half the side of the plot, metres.
+    fn reach(&self) -> f64 {
+        let [_, outer] = match self.map {
+            WorkspaceMap::Rings(map) => map.unrestricted,
+            WorkspaceMap::Shares(map) => map.unrestricted,
+        };
+        let links: f64 = self.links.iter().map(|link| link.abs()).sum();
+        let reach = [outer, links].into_iter().filter(|r| r.is_finite());
+        let reach = 1.05 * reach.fold(0.0, f64::max);
+        if reach > 0.0 { reach } else { 1.0 }
+    }
+
+    /// Colour of the limits' wedges, visible on the map's colours.
+    fn wedge(&self) -> RGBAColor {
+        match self.map {
+            WorkspaceMap::Rings(_) => translucent(ORANGE, 0.45),
+            WorkspaceMap::Shares(_) => translucent(WHITE, 0.6),
+        }
+    }
+
+    fn draw_legend(&self, canvas: &mut Canvas) {
+        let mut entries = vec![
+            (Swatch::Area(PALE, GREY), "unrestricted workspace"),
+            (Swatch::Arm(INK), "arm"),
+            (
+                Swatch::Area(self.wedge(), VERMILLION),
+                "artificial joint limits",
+            ),
+        ];
+        if let WorkspaceMap::Rings(_) = self.map {
+            entries.insert(0, (Swatch::Area(SKY, SKY), "fault-tolerant workspace W_F"));
+            entries.swap(1, 2);
+        }
+        let top = self.head() - 1.5 * LEGEND_ROW - 4.0;
+        legend(canvas, [14.0, top], COLUMN - 14.0 - MARGIN, 2, &entries);
+    }
+}
+
+/// The unrestricted annulus and on it the rings as vector polygons.
+fn draw_rings(canvas: &mut Canvas, panel: &Panel, map: &RingMap) {
+    if is_annulus(map.unrestricted) {
+        let annulus = polar::sector([0.0, 0.0], map.unrestricted, 0.0, TAU);
+        canvas.fill(&panel.path(&annulus), PALE);
+    }
+    for polygon in rings::polygons(map) {
+        let polygon = panel.path(&polygon);
+        canvas.fill(&polygon, SKY);
+        // Closes the hairline that antialiasing leaves between neighbours.
+        canvas.outline(&polygon, 0.35, SKY);
+    }
+    draw_edges(canvas, panel, map.unrestricted);
+}
+
+/// All cells as one picture.
+fn draw_shares(canvas: &mut Canvas, panel: &Panel, map: &ShareMap) {
+    let scale = (panel.x[1] - panel.x[0]) / panel.width;
+    let corner = [panel.left, panel.top];
+    canvas.picture(corner, [panel.width, panel.height], |x, y| {
+        let x = panel.x[0] + (x - panel.left) * scale;
+        let y = panel.y[1] - (y - panel.top) * scale;
+        shares::colour_at(map, x, y)
+    });
+    draw_edges(canvas, panel, map.unrestricted);
+    shares::colour_bar(
+        canvas,
+        [panel.left + panel.width + 6.0, panel.top],
+        panel.height,
+    );
+}
+
+/// The circles around the unrestricted workspace.
+fn draw_edges(canvas: &mut Canvas, panel: &Panel, unrestricted: [f64; 2]) {
+    if is_annulus(unrestricted) {
+        for radius in unrestricted.into_iter().filter(|r| *r > 0.0) {
+            let circle = polar::arc([0.0, 0.0], radius, 0.0, TAU);
+            canvas.stroke(&panel.path(&circle), 0.5, GREY);
+        }
+    }
+}
+
+fn is_annulus([inner, outer]: [f64; 2]) -> bool {
+    inner.is_finite() && outer.is_finite() && 0.0 <= inner && inner < outer
+}
+
+/// One row per arc of every ring.
+fn ring_table(map: &RingMap) -> Table {
+    let mut table = Table::new(&[
+        "radius_inner_m",
+        "radius_outer_m",
+        "beta_lower_deg",
+        "beta_upper_deg",
+    ]);
+    for ring in &map.rings {
+        for arc in ring.rotation_set.arcs() {
+            let ends = [arc.start(), arc.end()].map(f64::to_degrees);
+            table.rows.push(
+                [ring.inner, ring.outer, ends[0], ends[1]]
+                    .map(cell)
+                    .to_vec(),
+            );
+        }
+    }
+    table
+}
+
+/// One row per cell.
+fn share_table(map: &ShareMap) -> Table {
+    let columns = [
+        "radius_inner_m",
+        "radius_outer_m",
+        "beta_lower_deg",
+        "beta_upper_deg",
+        "share",
+    ];
+    let mut table = Table::new(&columns);
+    let step = 360.0 / map.angles.max(1) as f64;
+    for (edges, row) in map
+        .radius_edges
+        .windows(2)
+        .zip(map.share.chunks(map.angles.max(1)))
+    {
+        for (k, share) in row.iter().enumerate() {
+            let start = -180.0 + step * k as f64;
+            let numbers = [
+                edges[0],
+                edges[1],
+                start,
+                -180.0 + step * (k + 1) as f64,
+                *share,
+            ];
+            table.rows.push(numbers.map(cell).to_vec());
+        }
+    }
+    table
+}

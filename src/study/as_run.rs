@@ -1,0 +1,213 @@
+//! The study as run: the study file with every default filled in.
+
+use super::folder::resolve;
+use super::settings::{
+    CoordinateAscent, DegreeLimits, Estimator, Genetic, OptimiserSettings, Question,
+    ReportSettings, Study,
+};
+use crate::design::TaskSpace;
+use crate::workspace::FailureSet;
+use serde::Serialize;
+use std::path::{Component, Path};
+
+impl Study {
+    /// The study as a TOML text that means the same when it is saved as a file in `folder`, with
+    /// every default written out. The robot's path is relative to `folder`.
+    ///
+    /// # Errors
+    /// None is known; the TOML writer reserves the right.
+    pub fn to_toml(&self, folder: &Path) -> Result<String, toml::ser::Error> {
+        toml::to_string(&AsRun::new(self, folder))
+    }
+}
+
+#[derive(Serialize)]
+struct AsRun<'a> {
+    kind: &'static str,
+    title: Option<&'a str>,
+    design: String,
+    seed: u64,
+    task: Task,
+    limits: Option<&'a DegreeLimits>,
+    estimator: &'a Estimator,
+    estimate: Option<EstimateTable<'a>>,
+    search: Option<SearchTable<'a>>,
+    optimiser: Option<OptimiserTable<'a>>,
+    report: &'a ReportSettings,
+}
+
+#[derive(Serialize)]
+struct Task {
+    space: TaskSpace,
+    failures: Failures,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum Failures {
+    Any(&'static str),
+    Of(Vec<usize>),
+}
+
+#[derive(Serialize)]
+struct EstimateTable<'a> {
+    radii: &'a [f64],
+}
+
+#[derive(Serialize)]
+struct SearchTable<'a> {
+    min_width_deg: f64,
+    link_lower: Option<&'a [f64]>,
+    link_upper: Option<&'a [f64]>,
+}
+
+#[derive(Serialize)]
+#[serde(rename_all = "kebab-case")]
+struct OptimiserTable<'a> {
+    method: &'static str,
+    coordinate_ascent: Option<&'a CoordinateAscent>,
+    genetic: Option<&'a Genetic>,
+}
+
+impl<'a> AsRun<'a> {
+    fn new(study: &'a Study, folder: &Path) -> AsRun<'a> {
+        let mut as_run = AsRun {
+            kind: study.question.kind(),
+            title: study.title.as_deref(),
+            design: relative(&study.design.path, &resolve(folder)),
+            seed: study.seed,
+            task: Task {
+                space: study.task,
+                failures: failures(&study.failures, study.design.robot.joints()),
+            },
+            limits: None,
+            estimator: &study.estimator,
+            estimate: None,
+            search: None,
+            optimiser: None,
+            report: &study.report,
+        };
+        match &study.question {
+            Question::Estimate(estimate) => {
+                as_run.limits = Some(&estimate.limits);
+                as_run.estimate = Some(EstimateTable {
+                    radii: &estimate.radii,
+                });
+            }
+            Question::Optimise(optimise) => {
+                let links = optimise.search.links.as_ref();
+                as_run.limits = optimise.start.as_ref();
+                as_run.search = Some(SearchTable {
+                    min_width_deg: optimise.search.min_width_deg,
+                    link_lower: links.map(|links| links.link_lower.as_slice()),
+                    link_upper: links.map(|links| links.link_upper.as_slice()),
+                });
+                as_run.optimiser = Some(OptimiserTable::new(&optimise.optimiser));
+            }
+        }
+        as_run
+    }
+}
+
+impl<'a> OptimiserTable<'a> {
+    fn new(settings: &'a OptimiserSettings) -> OptimiserTable<'a> {
+        let (coordinate_ascent, genetic) = match settings {
+            OptimiserSettings::CoordinateAscent(ascent) => (Some(ascent), None),
+            OptimiserSettings::Genetic(genetic) => (None, Some(genetic)),
+        };
+        OptimiserTable {
+            method: settings.method(),
+            coordinate_ascent,
+            genetic,
+        }
+    }
+}
+
+fn failures(set: &FailureSet, joints: usize) -> Failures {
+    let numbers: Vec<usize> = set.numbers().collect();
+    if numbers.len() == joints {
+        Failures::Any("any")
+    } else {
+        Failures::Of(numbers)
+    }
+}
+
+/// `path` as seen from `folder`, with forward slashes; both absolute and without `..`.
+fn relative(path: &Path, folder: &Path) -> String {
+    let (mut from, mut to) = (folder.components().peekable(), path.components().peekable());
+    if from.peek() != to.peek() || from.peek() != Some(&Component::RootDir) {
+        return path.to_string_lossy().into_owned();
+    }
+    while from.peek().is_some() && from.peek() == to.peek() {
+        from.next();
+        to.next();
+    }
+    let up = from.map(|_| "..".into());
+    let down = to.map(|part| part.as_os_str().to_string_lossy());
+    up.chain(down).collect::<Vec<_>>().join("/")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn paths_are_relative_to_the_folder() {
+        let seen = |path: &str, folder: &str| relative(Path::new(path), Path::new(folder));
+        assert_eq!(
+            seen("/a/designs/x.toml", "/a/reports/s"),
+            "../../designs/x.toml"
+        );
+        assert_eq!(seen("/a/x.toml", "/a"), "x.toml");
+        assert_eq!(seen("x.toml", "/a"), "x.toml");
+    }
+
+    const ESTIMATE: &str = "kind = 'estimate'\ntitle = 'A \"title\"'\ndesign = 'r.toml'\n\
+        seed = 18446744073709551615\n[task]\nspace = 'planar-position'\nfailures = [3, 1]\n\
+        [limits]\nlower_deg = [-18.21, -180, 0.1]\nupper_deg = [18.21, 180, 0.1]\n\
+        [estimate]\nradii = [0, 1e-3, 2.5]\n[report]\nformats = []\nfigures = false\n";
+    const ASCENT: &str = "kind = 'optimise'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n";
+    const GENETIC: &str = "kind = 'optimise'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[limits]\nlower_deg = [0, 0, 0]\n\
+        upper_deg = [90, 90, 90]\n[search]\nmin_width_deg = 0.1\n\
+        link_lower = [0.5, 0.5, 0.5]\nlink_upper = [2, 2, 2]\n[optimiser]\n\
+        method = 'genetic'\n[optimiser.genetic]\nmutation_rate = 0.1\n\
+        [estimator]\ntolerance = 1e-5\n";
+
+    #[test]
+    fn the_study_as_run_means_the_same_from_its_own_folder() {
+        let dir = tempfile::tempdir().unwrap();
+        let robot = dir.path().join("r.toml");
+        std::fs::write(robot, "name = 'r'\nlinks = [1, 1, 1]").unwrap();
+        for text in [ESTIMATE, ASCENT, GENETIC] {
+            let written = dir.path().join("study.toml");
+            std::fs::write(&written, text).unwrap();
+            let study = Study::load(&written).unwrap();
+            let folder = dir.path().join("reports/x");
+            let as_run = study.to_toml(&folder).unwrap();
+            std::fs::create_dir_all(&folder).unwrap();
+            std::fs::write(folder.join("study.toml"), &as_run).unwrap();
+            let again = Study::load(&folder.join("study.toml")).unwrap();
+            assert_eq!(again, study, "{as_run}");
+            assert_eq!(again.to_toml(&folder).unwrap(), as_run);
+        }
+    }
+
+    #[test]
+    fn every_default_is_written_out() {
+        let dir = tempfile::tempdir().unwrap();
+        let file = dir.path().join("s.toml");
+        std::fs::write(dir.path().join("r.toml"), "name = 'r'\nlinks = [1, 1, 1]").unwrap();
+        std::fs::write(&file, ASCENT).unwrap();
+        let text = Study::load(&file).unwrap().to_toml(dir.path()).unwrap();
+        for key in [
+            "seed = 1",
+            "failures = \"any\"",
+            "restarts = 32",
+            "figures = true",
+        ] {
+            assert!(text.contains(key), "{key} is not in\n{text}");
+        }
+    }
+}

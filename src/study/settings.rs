@@ -1,0 +1,253 @@
+//! A validated study: every setting typed, in range and consistent with the robot.
+//!
+//! Field names are the keys of the study file. Angles stay in degrees, as the file has them, so
+//! that the study as run reads like the study as written; [`DegreeLimits::to_limits`] converts.
+
+use crate::design::{Robot, TaskSpace};
+use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
+use serde::Serialize;
+use std::path::PathBuf;
+
+/// One question about one robot.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Study {
+    /// The stem of the study file's name; names the report folder.
+    pub name: String,
+    /// A heading for the report, if the file gives one.
+    pub title: Option<String>,
+    /// The robot and its file.
+    pub design: Design,
+    /// Seed of every random stream, default 1.
+    pub seed: u64,
+    /// What the tool is asked to reach.
+    pub task: TaskSpace,
+    /// The joints F that may lock.
+    pub failures: FailureSet,
+    /// What is asked.
+    pub question: Question,
+    /// How workspaces are measured.
+    pub estimator: Estimator,
+    /// What the report contains.
+    pub report: ReportSettings,
+}
+
+/// A robot and the file it was read from.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Design {
+    /// Absolute path of the robot file.
+    pub path: PathBuf,
+    /// SHA-256 of the file's bytes, lower-case hexadecimal.
+    pub sha256: String,
+    /// The robot.
+    pub robot: Robot,
+}
+
+/// What a study asks: its `kind` and the tables that belong to it.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Question {
+    /// How large is the workspace for these limits?
+    Estimate(Estimate),
+    /// Which limits make the fault-tolerant workspace largest?
+    Optimise(Optimise),
+}
+
+/// Settings of `kind = "estimate"`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Estimate {
+    /// The artificial limits.
+    pub limits: DegreeLimits,
+    /// Radii, metres, at which the rotation sets are reported as well.
+    pub radii: Vec<f64>,
+}
+
+/// Settings of `kind = "optimise"`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Optimise {
+    /// A first candidate.
+    pub start: Option<DegreeLimits>,
+    /// What is searched.
+    pub search: Search,
+    /// Who searches.
+    pub optimiser: OptimiserSettings,
+}
+
+/// Artificial limits in degrees, joint 1 first; lower ≤ upper, at most 360 apart.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct DegreeLimits {
+    /// Lower limits, degrees.
+    pub lower_deg: Vec<f64>,
+    /// Upper limits, degrees.
+    pub upper_deg: Vec<f64>,
+}
+
+/// The search space.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Search {
+    /// Narrowest allowed limits of a joint, degrees in [0, 360], default 0.
+    pub min_width_deg: f64,
+    /// Bounds of the link lengths if these are searched too, at fixed total length; the score is
+    /// then S_F / S_0max.
+    pub links: Option<LinkBounds>,
+}
+
+/// Bounds of the link lengths, metres, joint 1 first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct LinkBounds {
+    /// Shortest lengths, above 0.
+    pub link_lower: Vec<f64>,
+    /// Longest lengths.
+    pub link_upper: Vec<f64>,
+}
+
+/// Settings of the optimiser that `[optimiser] method` names.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OptimiserSettings {
+    /// `coordinate-ascent`, the default.
+    CoordinateAscent(CoordinateAscent),
+    /// `genetic`.
+    Genetic(Genetic),
+}
+
+/// Coordinate ascent with random restarts.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct CoordinateAscent {
+    /// Number of starts, default 32.
+    pub restarts: u64,
+    /// Samples along a line before it is refined, default 24.
+    pub line_samples: u64,
+    /// Sweeps over all coordinates after which a start is given up, default 100.
+    pub max_sweeps: u64,
+    /// Relative gain of a sweep below which a start has converged, default 1e-9.
+    pub tolerance: f64,
+}
+
+/// Genetic algorithm.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Genetic {
+    /// Candidates per generation, default 100.
+    pub population: u64,
+    /// Most generations, default 200.
+    pub generations: u64,
+    /// Best candidates that survive unchanged, default 2, fewer than the population.
+    pub elite: u64,
+    /// Candidates of which the best becomes a parent, default 3.
+    pub tournament: u64,
+    /// Probability of crossover in [0, 1], default 0.9.
+    pub crossover_rate: f64,
+    /// Probability of mutation in [0, 1], default 0.3.
+    pub mutation_rate: f64,
+    /// Generations without improvement after which the search ends, default 50.
+    pub patience: u64,
+    /// Whether the best candidate is refined by coordinate ascent at the end, default true.
+    pub polish: bool,
+}
+
+/// How workspaces are measured.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Estimator {
+    /// The method, default exact.
+    pub method: EstimatorMethod,
+    /// Relative error target of quadrature for pose tasks, default 1e-3.
+    pub tolerance: f64,
+}
+
+/// The estimators of this version.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum EstimatorMethod {
+    /// Closed-form rotation sets of planar robots.
+    Exact,
+}
+
+/// What the report contains.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ReportSettings {
+    /// File formats of figures, default both.
+    pub formats: Vec<FigureFormat>,
+    /// Whether figures are drawn, default true.
+    pub figures: bool,
+}
+
+/// A file format of figures.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum FigureFormat {
+    /// Portable Network Graphics.
+    Png,
+    /// Scalable Vector Graphics.
+    Svg,
+}
+
+impl Question {
+    /// The study's `kind`.
+    pub fn kind(&self) -> &'static str {
+        match self {
+            Question::Estimate(_) => "estimate",
+            Question::Optimise(_) => "optimise",
+        }
+    }
+}
+
+impl OptimiserSettings {
+    /// The optimiser's `method`.
+    pub fn method(&self) -> &'static str {
+        match self {
+            OptimiserSettings::CoordinateAscent(_) => "coordinate-ascent",
+            OptimiserSettings::Genetic(_) => "genetic",
+        }
+    }
+}
+
+impl DegreeLimits {
+    /// The limits in radians.
+    pub fn to_limits(&self) -> ArtificialLimits {
+        let pairs = self.lower_deg.iter().zip(&self.upper_deg);
+        let joint =
+            |(lower, upper): (&f64, &f64)| JointLimit::new(lower.to_radians(), upper.to_radians());
+        ArtificialLimits::new(pairs.map(joint).collect())
+    }
+}
+
+impl Default for CoordinateAscent {
+    fn default() -> CoordinateAscent {
+        CoordinateAscent {
+            restarts: 32,
+            line_samples: 24,
+            max_sweeps: 100,
+            tolerance: 1e-9,
+        }
+    }
+}
+
+impl Default for Genetic {
+    fn default() -> Genetic {
+        Genetic {
+            population: 100,
+            generations: 200,
+            elite: 2,
+            tournament: 3,
+            crossover_rate: 0.9,
+            mutation_rate: 0.3,
+            patience: 50,
+            polish: true,
+        }
+    }
+}
+
+impl Default for Estimator {
+    fn default() -> Estimator {
+        Estimator {
+            method: EstimatorMethod::Exact,
+            tolerance: 1e-3,
+        }
+    }
+}
+
+impl Default for ReportSettings {
+    fn default() -> ReportSettings {
+        ReportSettings {
+            formats: vec![FigureFormat::Png, FigureFormat::Svg],
+            figures: true,
+        }
+    }
+}
