@@ -21,11 +21,11 @@ const INTERVAL: Duration = Duration::from_millis(200);
 /// Where a search stands.
 #[derive(Clone, Serialize, Deserialize)]
 pub(super) enum Stage {
-    Ascent(Snapshot<CoordinateAscent>),
-    Genetic(Snapshot<Genetic>),
+    Ascent(Box<Snapshot<CoordinateAscent>>),
+    Genetic(Box<Snapshot<Genetic>>),
     Polish {
         before: Record,
-        snapshot: Snapshot<CoordinateAscent>,
+        snapshot: Box<Snapshot<CoordinateAscent>>,
     },
 }
 

@@ -239,8 +239,8 @@ impl Ended {
 fn stage<S>(
     objective: &dyn Objective,
     solver: S,
-    saved: Option<Snapshot<S>>,
-    wrap: impl Fn(Snapshot<S>) -> Stage + Send + Sync + 'static,
+    saved: Option<Box<Snapshot<S>>>,
+    wrap: impl Fn(Box<Snapshot<S>>) -> Stage + Send + Sync + 'static,
     session: &Session,
     name: &'static str,
 ) -> Result<Ended, RunError>
@@ -259,16 +259,17 @@ where
         }),
         on_snapshot: Arc::new(move |solver: &S, state: &SearchState| {
             store.save_if_due(|| {
-                wrapper(Snapshot {
+                wrapper(Box::new(Snapshot {
                     solver: solver.clone(),
                     state: state.clone(),
-                })
+                }))
             })
         }),
     };
-    let (snapshot, interrupted) = run_search(objective, solver, saved, control)?;
+    let (snapshot, interrupted) =
+        run_search(objective, solver, saved.map(|saved| *saved), control)?;
     if interrupted {
-        session.store.save(wrap(snapshot))?;
+        session.store.save(wrap(Box::new(snapshot)))?;
         return Err(RunError::Interrupted);
     }
     let solver = snapshot.solver;

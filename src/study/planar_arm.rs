@@ -103,14 +103,14 @@ impl PlanarStudy {
         }
     }
 
-    /// S_F for limits between links, as the search's last stage computes it.
+    /// S_F for limits between links: exact for position tasks, for pose tasks at the coarse
+    /// resolution of a search, which is good enough for a curve.
     pub fn size(&self, limits: &ArtificialLimits) -> f64 {
-        match self.pose {
-            None => PlanarPosition::new().fault_tolerant_size(self.arm(limits)),
-            Some(resolution) => {
-                let mut estimator = PlanarPose::new(resolution);
-                estimator.fault_tolerant_size(self.arm(limits)).value
-            }
+        if self.is_pose() {
+            let mut estimator = PlanarPose::new(PoseResolution::coarse());
+            estimator.fault_tolerant_size(self.arm(limits)).value
+        } else {
+            PlanarPosition::new().fault_tolerant_size(self.arm(limits))
         }
     }
 

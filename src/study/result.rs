@@ -42,7 +42,7 @@ impl Finding<'_> {
             "status": self.status(),
             "size": self.size(),
             "workspaces": self.workspaces(),
-            "limits_deg": limits_deg(&self.arm.to_joints(self.limits)),
+            "limits_deg": self.limits_deg(),
             "links": { "lengths": self.arm.lengths, "unit": "m" },
             "evaluations": self.optimum.map_or(0, Optimum::evaluations),
             "failed_poses": 0,
@@ -63,6 +63,17 @@ impl Finding<'_> {
             "design_sha256": study.design.sha256,
         });
         result
+    }
+
+    /// The limits of an estimate as the study has them, of an optimum as degrees.
+    fn limits_deg(&self) -> Value {
+        match &self.study.question {
+            Question::Estimate(estimate) => {
+                let limits = &estimate.limits;
+                json!({ "lower": limits.lower_deg, "upper": limits.upper_deg })
+            }
+            Question::Optimise(_) => limits_deg(&self.arm.to_joints(self.limits)),
+        }
     }
 
     fn size(&self) -> Value {

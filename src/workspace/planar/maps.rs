@@ -9,13 +9,13 @@ use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Bearings of the wrist around the circle for which a share map tabulates directions.
-const TABLE_BEARINGS: usize = 360;
+const TABLE_BEARINGS: usize = 720;
 
 /// Wrist radii for which a share map tabulates directions.
-const TABLE_RADII: usize = 240;
+const TABLE_RADII: usize = 400;
 
 /// Orientations per tool position of a share map.
-const ORIENTATIONS: usize = 240;
+const ORIENTATIONS: usize = 480;
 
 impl PlanarPosition {
     /// W_F as about `rings` thin rings, finer towards critical radii, where arcs open like square
