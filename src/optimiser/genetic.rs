@@ -3,8 +3,8 @@
 //! Crossover averages the two parents' limits; mutation replaces one joint's limits by random
 //! ones. Averages on the circle go the short way round.
 
+use super::Maximise;
 use super::search::{self, Candidate, HistoryPoint, Search, SearchState, status};
-use super::{CoordinateAscentSettings, Maximise};
 use crate::objective::{Objective, SearchSpace};
 use crate::sampling;
 use argmin::core::{Error, KV, Problem, Solver, State, TerminationStatus};
@@ -56,6 +56,8 @@ pub struct Genetic {
     generator: ChaCha8Rng,
     starts: Vec<Vec<f64>>,
     population: Vec<Candidate>,
+    /// Best of all generations; without elitism a later one may be worse.
+    best: Option<Candidate>,
     generation: usize,
     last_gain: usize,
     evaluations: u64,
@@ -72,17 +74,13 @@ impl Genetic {
             generator: sampling::stream(seed, 0),
             starts,
             population: Vec::new(),
+            best: None,
             generation: 0,
             last_gain: 0,
             evaluations: 0,
             history: Vec::new(),
             interrupt: None,
         }
-    }
-
-    /// Settings of the local search that follows a genetic one.
-    pub fn polish_settings() -> CoordinateAscentSettings {
-        CoordinateAscentSettings::default()
     }
 
     /// Scores in parallel; order and therefore results do not depend on the threads.
@@ -100,14 +98,15 @@ impl Genetic {
     /// Replaces the population, best first; ties keep their order.
     fn settle(&mut self, mut population: Vec<Candidate>) {
         population.sort_by(|a, b| b.score.total_cmp(&a.score));
-        let before = self.population.first().map(|c| c.score);
+        let before = self.best.as_ref().map(|best| best.score);
         if before.is_none_or(|score| population[0].score > score) {
             self.last_gain = self.generation;
+            self.best = Some(population[0].clone());
         }
         let mean = population.iter().map(|c| c.score).sum::<f64>() / population.len() as f64;
         self.history.push(HistoryPoint {
             evaluations: self.evaluations,
-            best: population[0].score,
+            best: before.map_or(population[0].score, |score| score.max(population[0].score)),
             mean: Some(mean),
         });
         self.population = population;
@@ -168,7 +167,7 @@ impl Solver<Maximise<'_>, SearchState> for Genetic {
         }
         let population = self.evaluate(objective, points);
         self.settle(population);
-        Ok((search::with_best(state, self.population.first()), None))
+        Ok((search::with_best(state, self.best.as_ref()), None))
     }
 
     fn next_iter(
@@ -183,7 +182,7 @@ impl Solver<Maximise<'_>, SearchState> for Genetic {
         let missing = self.settings.population.saturating_sub(next.len());
         next.extend(self.population.iter().take(missing).cloned());
         self.settle(next);
-        Ok((search::with_best(state, self.population.first()), None))
+        Ok((search::with_best(state, self.best.as_ref()), None))
     }
 
     fn terminate(&mut self, state: &SearchState) -> TerminationStatus {
@@ -194,7 +193,11 @@ impl Solver<Maximise<'_>, SearchState> for Genetic {
 
 impl Search for Genetic {
     fn candidates(&self) -> Vec<Candidate> {
-        self.population.clone()
+        let newer = self
+            .population
+            .iter()
+            .skip_while(|c| self.best.as_ref() == Some(c));
+        self.best.iter().chain(newer).cloned().collect()
     }
 
     fn evaluations(&self) -> u64 {

@@ -120,7 +120,7 @@ pub(super) fn search(
         });
     }
     let starts = polish_starts(&global.candidates, &fine, seed);
-    let solver = CoordinateAscent::polish(&ascent_settings(optimise, arm), seed ^ 1, starts);
+    let solver = CoordinateAscent::polish(&polish_settings(optimise, arm), seed ^ 1, starts);
     let before = global.record.clone();
     let wrap = move |snapshot| Stage::Polish {
         before: before.clone(),
@@ -143,23 +143,40 @@ fn design_space(optimise: &Optimise, arm: &PlanarStudy) -> DesignSpace {
     DesignSpace::new(&arm.lengths, min_width, arm.is_pose(), links)
 }
 
-fn ascent_settings(optimise: &Optimise, arm: &PlanarStudy) -> CoordinateAscentSettings {
-    let defaults = CoordinateAscentSettings::default();
+/// Settings of the local stage: those of the study as far as they apply.
+fn polish_settings(optimise: &Optimise, arm: &PlanarStudy) -> CoordinateAscentSettings {
     let mut settings = match &optimise.optimiser {
-        OptimiserSettings::CoordinateAscent(ascent) => CoordinateAscentSettings {
-            restarts: ascent.restarts as usize,
-            line_samples: ascent.line_samples as usize,
-            max_sweeps: ascent.max_sweeps as usize,
-            tolerance: ascent.tolerance,
-            ..defaults
-        },
-        OptimiserSettings::Genetic(_) => defaults,
+        OptimiserSettings::CoordinateAscent(ascent) => ascent_settings(ascent),
+        OptimiserSettings::Genetic(_) => CoordinateAscentSettings::default(),
     };
     if arm.is_pose() {
         settings.max_sweeps = settings.max_sweeps.min(POSE_SWEEPS);
         settings.tolerance = settings.tolerance.max(POSE_TOLERANCE);
     }
     settings
+}
+
+fn ascent_settings(ascent: &super::settings::CoordinateAscent) -> CoordinateAscentSettings {
+    CoordinateAscentSettings {
+        restarts: ascent.restarts as usize,
+        line_samples: ascent.line_samples as usize,
+        scout_sweeps: ascent.scout_sweeps as usize,
+        finalists: ascent.finalists as usize,
+        max_sweeps: ascent.max_sweeps as usize,
+        tolerance: ascent.tolerance,
+    }
+}
+
+fn genetic_settings(genetic: &super::settings::Genetic) -> GeneticSettings {
+    GeneticSettings {
+        population: genetic.population as usize,
+        generations: genetic.generations as usize,
+        elite: genetic.elite as usize,
+        tournament: genetic.tournament as usize,
+        crossover_rate: genetic.crossover_rate,
+        mutation_rate: genetic.mutation_rate,
+        patience: genetic.patience as usize,
+    }
 }
 
 fn global_stage(
@@ -170,52 +187,24 @@ fn global_stage(
     saved: Option<Stage>,
     session: &Session,
 ) -> Result<Ended, RunError> {
-    match &optimise.optimiser {
-        OptimiserSettings::CoordinateAscent(ascent) => {
-            let settings = CoordinateAscentSettings {
-                restarts: ascent.restarts as usize,
-                line_samples: ascent.line_samples as usize,
-                max_sweeps: ascent.max_sweeps as usize,
-                tolerance: ascent.tolerance,
-                ..CoordinateAscentSettings::default()
-            };
+    match (&optimise.optimiser, saved) {
+        (OptimiserSettings::CoordinateAscent(ascent), saved) => {
             let saved = match saved {
                 Some(Stage::Ascent(snapshot)) => Some(snapshot),
                 _ => None,
             };
-            let solver = CoordinateAscent::new(settings, seed, starts);
-            stage(
-                objective,
-                solver,
-                saved,
-                Stage::Ascent,
-                session,
-                "coordinate ascent",
-            )
+            let solver = CoordinateAscent::new(ascent_settings(ascent), seed, starts);
+            let name = "coordinate ascent";
+            stage(objective, solver, saved, Stage::Ascent, session, name)
         }
-        OptimiserSettings::Genetic(genetic) => {
-            let settings = GeneticSettings {
-                population: genetic.population as usize,
-                generations: genetic.generations as usize,
-                elite: genetic.elite as usize,
-                tournament: genetic.tournament as usize,
-                crossover_rate: genetic.crossover_rate,
-                mutation_rate: genetic.mutation_rate,
-                patience: genetic.patience as usize,
-            };
+        (OptimiserSettings::Genetic(genetic), saved) => {
             let saved = match saved {
                 Some(Stage::Genetic(snapshot)) => Some(snapshot),
                 _ => None,
             };
-            let solver = Genetic::new(settings, seed, starts);
-            stage(
-                objective,
-                solver,
-                saved,
-                Stage::Genetic,
-                session,
-                "genetic algorithm",
-            )
+            let solver = Genetic::new(genetic_settings(genetic), seed, starts);
+            let name = "genetic algorithm";
+            stage(objective, solver, saved, Stage::Genetic, session, name)
         }
     }
 }

@@ -60,7 +60,14 @@ pub(super) fn read_optimiser(root: &Table) -> Option<Item<OptimiserTable>> {
     let method = table.choice("method", &methods);
     let ascent = table.table(
         "coordinate-ascent",
-        &["restarts", "line_samples", "max_sweeps", "tolerance"],
+        &[
+            "restarts",
+            "line_samples",
+            "scout_sweeps",
+            "finalists",
+            "max_sweeps",
+            "tolerance",
+        ],
     );
     let genetic = table.table(
         "genetic",
@@ -97,6 +104,8 @@ fn read_ascent(table: &Table) -> CoordinateAscent {
     CoordinateAscent {
         restarts: count("restarts", 1, default.restarts),
         line_samples: count("line_samples", 4, default.line_samples),
+        scout_sweeps: count("scout_sweeps", 1, default.scout_sweeps),
+        finalists: count("finalists", 1, default.finalists),
         max_sweeps: count("max_sweeps", 1, default.max_sweeps),
         tolerance: table
             .number("tolerance", 0.0..=1.0, "")

@@ -115,6 +115,10 @@ pub struct CoordinateAscent {
     pub restarts: u64,
     /// Samples along a line before it is refined, default 24.
     pub line_samples: u64,
+    /// First sweeps, which scan the whole box, for all starts, default 2.
+    pub scout_sweeps: u64,
+    /// Starts that go on after the first sweeps, default 6.
+    pub finalists: u64,
     /// Sweeps over all coordinates after which a start is given up, default 100.
     pub max_sweeps: u64,
     /// Relative gain of a sweep below which a start has converged, default 1e-9.
@@ -213,6 +217,8 @@ impl Default for CoordinateAscent {
         CoordinateAscent {
             restarts: 32,
             line_samples: 24,
+            scout_sweeps: 2,
+            finalists: 6,
             max_sweeps: 100,
             tolerance: 1e-9,
         }
