@@ -3,8 +3,11 @@
 //! Compare the lines of one run with each other: absolute times depend on the machine.
 
 use criterion::{Criterion, criterion_group, criterion_main};
-use faultspace::workspace::planar::{PlanarArm, PlanarPosition};
+use faultspace::objective::{DesignSpace, Objective, PlanarObjective, PlanarTask};
+use faultspace::sampling;
+use faultspace::workspace::planar::{PlanarArm, PlanarPose, PlanarPosition, PoseResolution};
 use faultspace::workspace::{ArtificialLimits, FailureSet};
+use rayon::prelude::*;
 use std::hint::black_box;
 
 fn position(c: &mut Criterion) {
@@ -48,9 +51,63 @@ fn position(c: &mut Criterion) {
     }
 }
 
+/// The evaluations of one generation of the genetic algorithm, on all cores.
+fn generation(c: &mut Criterion) {
+    let space = DesignSpace::new(&[1.0, 1.0, 1.0], 0.0, false, None);
+    let objective = PlanarObjective::new(space, PlanarTask::Position, FailureSet::any(3), false);
+    let mut generator = sampling::stream(1, 0);
+    let candidates: Vec<Vec<f64>> = (0..100)
+        .map(|_| objective.space().random(&mut generator))
+        .collect();
+    c.bench_function("planar position 3R, generation of 100", |b| {
+        b.iter(|| -> Vec<f64> {
+            let scores = candidates.par_iter().map(|x| objective.score(x));
+            scores.collect()
+        })
+    });
+}
+
+fn pose(c: &mut Criterion) {
+    let cases = [
+        (
+            "4R asymmetric",
+            vec![[-60.0, 75.0], [20.0, 140.0], [10.0, 150.0], [-120.0, 90.0]],
+        ),
+        (
+            "5R published",
+            vec![
+                [-111.0, 111.0],
+                [-150.0, 25.0],
+                [-150.0, 25.0],
+                [-150.0, 150.0],
+                [130.0, 275.0],
+            ],
+        ),
+    ];
+    for (name, pairs) in cases {
+        let limits = ArtificialLimits::from_degrees(&pairs);
+        let lengths = vec![1.0; pairs.len()];
+        let failures = FailureSet::any(pairs.len());
+        let arm = PlanarArm {
+            lengths: &lengths,
+            limits: &limits,
+            failures: &failures,
+        };
+        for (label, resolution) in [
+            ("coarse", PoseResolution::coarse()),
+            ("default", PoseResolution::default()),
+        ] {
+            let mut estimator = PlanarPose::new(resolution);
+            c.bench_function(&format!("planar pose {name}, {label}"), |b| {
+                b.iter(|| estimator.fault_tolerant_size(black_box(arm)))
+            });
+        }
+    }
+}
+
 criterion_group! {
     name = benches;
     config = Criterion::default().sample_size(20).measurement_time(std::time::Duration::from_secs(2));
-    targets = position
+    targets = position, generation, pose
 }
 criterion_main!(benches);

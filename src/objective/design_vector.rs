@@ -8,6 +8,9 @@ use super::space::{SearchSpace, Variable};
 use crate::workspace::{ArtificialLimits, JointLimit};
 use std::f64::consts::{PI, TAU};
 
+/// Share of random limits that are free or as narrow as allowed.
+const END_BIAS: f64 = 0.3;
+
 /// What a point of the box stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
@@ -67,11 +70,13 @@ impl DesignSpace {
             lower: min_width,
             upper: TAU,
             periodic: false,
+            end_bias: END_BIAS,
         };
         let middle = Variable {
             lower: -PI,
             upper: PI,
             periodic: true,
+            end_bias: 0.0,
         };
         let mut steps: Vec<Vec<(usize, f64)>> = Vec::new();
         for &centred in &self.centred {
@@ -106,6 +111,7 @@ impl DesignSpace {
                 lower,
                 upper,
                 periodic: false,
+                end_bias: 0.0,
             });
         }
         self.space

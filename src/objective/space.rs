@@ -12,6 +12,9 @@ pub struct Variable {
     pub upper: f64,
     /// Whether `lower` and `upper` are the same place, as for an angle.
     pub periodic: bool,
+    /// Probability that a random point takes one of the two ends. Optima often lie there (a joint
+    /// free or held still), where uniform draws never fall.
+    pub end_bias: f64,
 }
 
 /// The box that an optimiser searches.
@@ -32,9 +35,17 @@ impl SearchSpace {
         self.variables.len()
     }
 
-    /// A uniformly random point.
+    /// A random point: uniform, but for the ends that `end_bias` asks for.
     pub fn random(&self, generator: &mut impl Rng) -> Vec<f64> {
-        let draw = |v: &Variable| v.lower + (v.upper - v.lower) * generator.random::<f64>();
+        let draw = |v: &Variable| {
+            // Both numbers are always drawn, so that one variable's bias does not shift the rest.
+            let (at_end, share) = (generator.random::<f64>(), generator.random::<f64>());
+            if at_end < v.end_bias {
+                if share < 0.5 { v.lower } else { v.upper }
+            } else {
+                v.lower + (v.upper - v.lower) * share
+            }
+        };
         self.variables.iter().map(draw).collect()
     }
 
@@ -108,6 +119,7 @@ mod tests {
             lower: -1.0,
             upper: 1.0,
             periodic,
+            end_bias: 0.0,
         };
         SearchSpace {
             variables: vec![variable(true), variable(false)],
@@ -123,6 +135,16 @@ mod tests {
         assert!((moved[0] + 0.7).abs() < 1e-12 && moved[1] == 1.0);
         let gap = space.difference(&[0.9, 0.9], &[-0.9, -0.9]);
         assert!((gap[0] - 0.2).abs() < 1e-12 && (gap[1] + 1.8).abs() < 1e-12);
+    }
+
+    #[test]
+    fn ends_are_drawn_as_often_as_asked() {
+        let mut space = ring_and_segment();
+        space.variables[1].end_bias = 0.4;
+        let mut generator = crate::sampling::stream(3, 0);
+        let draws: Vec<f64> = (0..4000).map(|_| space.random(&mut generator)[1]).collect();
+        let share = |end: f64| draws.iter().filter(|x| **x == end).count() as f64 / 4000.0;
+        assert!((share(-1.0) - 0.2).abs() < 0.03 && (share(1.0) - 0.2).abs() < 0.03);
     }
 
     #[test]

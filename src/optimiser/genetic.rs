@@ -49,6 +49,10 @@ impl Default for GeneticSettings {
     }
 }
 
+/// Random points drawn for each place in the first generation: where most limits leave no
+/// fault-tolerant workspace at all, a single draw leaves hardly a parent.
+const DRAWS: usize = 10;
+
 /// The solver.
 #[derive(Clone, Serialize, Deserialize)]
 pub struct Genetic {
@@ -162,10 +166,13 @@ impl Solver<Maximise<'_>, SearchState> for Genetic {
     ) -> Result<(SearchState, Option<KV>), Error> {
         let objective = search::objective(problem)?;
         let mut points = self.starts.clone();
-        while points.len() < self.settings.population {
+        let wanted = self.settings.population.max(points.len());
+        while points.len() < DRAWS * wanted {
             points.push(objective.space().random(&mut self.generator));
         }
-        let population = self.evaluate(objective, points);
+        let mut population = self.evaluate(objective, points);
+        population.sort_by(|a, b| b.score.total_cmp(&a.score));
+        population.truncate(wanted);
         self.settle(population);
         Ok((search::with_best(state, self.best.as_ref()), None))
     }
