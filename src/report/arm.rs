@@ -1,10 +1,10 @@
 //! The arm in the plane, with its artificial limits as wedges at the joints.
 
 use super::canvas::Canvas;
+use super::canvas::Point;
 use super::label::rectangle;
 use super::panel::Panel;
 use super::polar;
-use super::raster::Point;
 use super::style::{INK, VERMILLION, WHITE, translucent};
 use crate::workspace::{ArtificialLimits, JointLimit};
 use plotters::style::RGBAColor;

@@ -1,11 +1,11 @@
 //! How a search improved: best score against evaluations.
 
+use super::canvas::Point;
 use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
 use super::number::{plain, unit, with_unit};
 use super::panel::{BOTTOM, Panel, left, range};
-use super::raster::Point;
 use super::style::{BLUE, COLUMN, HALF_CAPITAL, INK, MARGIN, ORANGE, SMALL};
 use super::table::{Table, cell, column};
 use super::ticks::{self, Tick};

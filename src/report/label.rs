@@ -1,14 +1,10 @@
 //! Lines of text in a figure: subscripts, fitting into a width, legends.
 
-use super::canvas::{Canvas, Lettering};
-use super::font;
-use super::raster::Point;
+use super::canvas::{Canvas, Lettering, Point};
+use super::render;
 use super::style::{HALF_CAPITAL, INK, SMALL, WHITE};
 use plotters::style::RGBAColor;
 use plotters::style::text_anchor::HPos;
-
-/// Size of a subscript in units of its line's, and its drop below the base line.
-const SUBSCRIPT: (f64, f64) = (0.72, 0.2);
 
 /// A line of text; `_` before a character sets that character as a subscript: "W_F".
 #[derive(Clone, Copy)]
@@ -66,73 +62,20 @@ impl<'t> Label<'t> {
 
     /// Draws with the base line at `at`.
     pub(super) fn draw(self, canvas: &mut Canvas, at: Point) {
-        let runs = runs(self.text);
-        let width = self.width();
-        // A line in one piece keeps its own anchor, which is exact for any font.
-        if let [(text, false)] = runs.as_slice() {
-            canvas.text(text, at, &self.lettering(self.size, self.align));
-            return;
-        }
-        let mut along = match self.align {
-            HPos::Left => 0.0,
-            HPos::Center => -0.5 * width,
-            HPos::Right => -width,
+        let lettering = Lettering {
+            size: self.size,
+            bold: self.bold,
+            colour: self.colour,
+            align: self.align,
+            upright: self.upright,
         };
-        for (run, is_subscript) in &runs {
-            let (scale, drop) = if *is_subscript { SUBSCRIPT } else { (1.0, 0.0) };
-            let (size, drop) = (scale * self.size, drop * self.size);
-            // SVG drops spaces at the start of a text.
-            let text = run.trim_start_matches(' ');
-            along += size * (font::width(run, self.bold) - font::width(text, self.bold));
-            let place = if self.upright {
-                [at[0] + drop, at[1] - along]
-            } else {
-                [at[0] + along, at[1] + drop]
-            };
-            canvas.text(text, place, &self.lettering(size, HPos::Left));
-            along += size * font::width(text, self.bold);
-        }
+        canvas.text(self.text, at, &lettering);
     }
 
     /// Width in points.
     pub(super) fn width(&self) -> f64 {
-        let width = |(text, is_subscript): &(String, bool)| {
-            let scale = if *is_subscript { SUBSCRIPT.0 } else { 1.0 };
-            scale * self.size * font::width(text, self.bold)
-        };
-        runs(self.text).iter().map(width).sum()
+        self.size * render::text_width(self.text, self.bold)
     }
-
-    fn lettering(&self, size: f64, align: HPos) -> Lettering {
-        Lettering {
-            size,
-            bold: self.bold,
-            colour: self.colour,
-            align,
-            upright: self.upright,
-        }
-    }
-}
-
-/// Splits "size S_F (m²)" into ("size S", ordinary), ("F", subscript), (" (m²)", ordinary).
-fn runs(text: &str) -> Vec<(String, bool)> {
-    let mut runs: Vec<(String, bool)> = Vec::new();
-    let mut characters = text.chars().peekable();
-    let mut after_letter = false;
-    while let Some(c) = characters.next() {
-        let next = characters.peek().copied();
-        if c == '_' && after_letter && next.is_some_and(|n| n.is_alphanumeric()) {
-            runs.extend(characters.next().map(|n| (n.to_string(), true)));
-            after_letter = false;
-            continue;
-        }
-        after_letter = c.is_alphabetic();
-        match runs.last_mut() {
-            Some((run, false)) => run.push(c),
-            _ => runs.push((c.to_string(), false)),
-        }
-    }
-    runs
 }
 
 /// The text and size that stay within `width`: down to 70 % in size, then cut with an ellipsis.
@@ -180,7 +123,7 @@ pub(super) enum Swatch {
 pub(super) const LEGEND_ROW: f64 = 10.0;
 
 /// Draws legend entries in `columns` columns over `width` points, the first row's middle at
-/// `at`.
+/// `at`. Columns are as wide as their entries, and share what is left over.
 pub(super) fn legend(
     canvas: &mut Canvas,
     at: Point,
@@ -189,13 +132,23 @@ pub(super) fn legend(
     entries: &[(Swatch, &str)],
 ) {
     let columns = columns.max(1);
-    let step = width / columns as f64;
-    for (k, (swatch, text)) in entries.iter().enumerate() {
-        let x = at[0] + (k % columns) as f64 * step;
-        let y = at[1] + (k / columns) as f64 * LEGEND_ROW;
-        draw_swatch(canvas, *swatch, [x, y]);
-        let base = y + HALF_CAPITAL * SMALL;
-        Label::new(text, SMALL).draw_within(canvas, [x + 16.0, base], step - 18.0);
+    let needed = |column: usize| {
+        let texts = entries.iter().skip(column).step_by(columns);
+        let widths = texts.map(|(_, text)| 20.0 + Label::new(text, SMALL).width());
+        widths.fold(0.0, f64::max)
+    };
+    let needed: Vec<f64> = (0..columns).map(needed).collect();
+    let spare = (width - needed.iter().sum::<f64>()) / columns as f64;
+    let mut x = at[0];
+    for (column, needed) in needed.iter().enumerate() {
+        let step = needed + spare;
+        for (row, (swatch, text)) in entries.iter().skip(column).step_by(columns).enumerate() {
+            let y = at[1] + row as f64 * LEGEND_ROW;
+            draw_swatch(canvas, *swatch, [x, y]);
+            let base = y + HALF_CAPITAL * SMALL;
+            Label::new(text, SMALL).draw_within(canvas, [x + 16.0, base], step - 18.0);
+        }
+        x += step;
     }
 }
 
@@ -243,25 +196,5 @@ pub(super) fn dashed(canvas: &mut Canvas, from: Point, to: Point, width: f64, co
             width,
             colour,
         );
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn subscripts_follow_a_letter() {
-        let whole = runs("size S_F (m²)");
-        assert_eq!(
-            whole,
-            [
-                ("size S".into(), false),
-                ("F".into(), true),
-                (" (m²)".into(), false)
-            ]
-        );
-        assert_eq!(runs("_x 1_2 a_"), [("_x 1_2 a_".into(), false)]);
-        assert!(runs("").is_empty());
     }
 }

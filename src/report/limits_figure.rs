@@ -1,11 +1,11 @@
 //! The artificial limits as dials, one per joint.
 
+use super::canvas::Point;
 use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::Label;
 use super::number::{degrees, joint_symbol};
 use super::polar;
-use super::raster::Point;
 use super::style::{BLUE, COLUMN, GREY, HALF_CAPITAL, INK, MARGIN, NORMAL, PALE, SMALL, TITLE};
 use super::table::{Table, cell};
 use crate::workspace::{ArtificialLimits, JointLimit};

@@ -1,8 +1,8 @@
 //! A pair of axes: from data to points of the sheet, with frame, ticks and labels.
 
 use super::canvas::Canvas;
+use super::canvas::Point;
 use super::label::Label;
-use super::raster::Point;
 use super::style::{GRID, HALF_CAPITAL, INK, NORMAL, SMALL};
 use super::ticks::Tick;
 use plotters::style::text_anchor::HPos;

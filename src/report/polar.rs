@@ -1,6 +1,6 @@
 //! Arcs and sectors as polygons. Angles in radians, counter-clockwise from the x axis.
 
-use super::raster::Point;
+use super::canvas::Point;
 use std::f64::consts::TAU;
 
 /// Corners of arcs are at most this far apart, radians.

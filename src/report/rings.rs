@@ -1,21 +1,22 @@
 //! The outline of a position task's workspace, as few smooth polygons.
 //!
-//! The workspace is known ring by ring. Where an arc of one ring continues as exactly one arc of
+//! The workspace is known ring by ring, and finer where its shape changes. Where an arc of one ring continues as exactly one arc of
 //! the next, both belong to one strand; a strand's sides run through the ends of its arcs at the
 //! rings' middle radii. Where arcs split, merge, appear or end, strands begin and end on the
 //! circle between the two rings.
 
+use super::canvas::Point;
 use super::polar::spiral;
-use super::raster::Point;
-use crate::angle::{Arc, turn};
-use crate::workspace::{Ring, RingMap};
+use super::slices::{Slice, meet, slices};
+use crate::angle::Arc;
+use crate::workspace::RingMap;
 use std::f64::consts::TAU;
 
 /// Arcs that follow each other outwards without changing neighbours.
 struct Strand {
     inner: f64,
     outer: f64,
-    /// Middle radius, first and last angle, unwrapped along the strand.
+    /// Radius, first and last angle, unwrapped along the strand.
     rows: Vec<[f64; 3]>,
     last: Arc,
 }
@@ -25,8 +26,9 @@ pub(super) fn polygons(map: &RingMap) -> Vec<Vec<Point>> {
     let mut done = Vec::new();
     let mut open: Vec<Strand> = Vec::new();
     let mut edge = f64::NEG_INFINITY;
-    for ring in map.rings.iter().filter(|ring| is_drawable(ring)) {
-        let is_adjacent = (ring.inner - edge).abs() <= 1e-3 * (ring.outer - ring.inner);
+    let slices = slices(map);
+    for ring in &slices {
+        let is_adjacent = (ring.inner - edge).abs() <= 1e-6 * ring.outer;
         if !is_adjacent {
             done.append(&mut open);
         }
@@ -37,13 +39,9 @@ pub(super) fn polygons(map: &RingMap) -> Vec<Vec<Point>> {
     done.iter().map(Strand::polygon).collect()
 }
 
-fn is_drawable(ring: &Ring) -> bool {
-    ring.inner.is_finite() && ring.outer.is_finite() && 0.0 <= ring.inner && ring.inner < ring.outer
-}
-
 /// Carries the open strands over to `ring`; those that do not go on move to `done`.
-fn continued(open: Vec<Strand>, ring: &Ring, done: &mut Vec<Strand>) -> Vec<Strand> {
-    let arcs = ring.rotation_set.arcs();
+fn continued(open: Vec<Strand>, ring: &Slice, done: &mut Vec<Strand>) -> Vec<Strand> {
+    let arcs = ring.set.arcs();
     let touching = |strand: &Strand| -> Vec<usize> {
         let meets = |k: &usize| meet(&strand.last, &arcs[*k]);
         (0..arcs.len()).filter(meets).collect()
@@ -67,13 +65,8 @@ fn continued(open: Vec<Strand>, ring: &Ring, done: &mut Vec<Strand>) -> Vec<Stra
     next
 }
 
-/// Whether two closed arcs have an angle in common.
-fn meet(a: &Arc, b: &Arc) -> bool {
-    turn(a.start(), b.start()) <= a.width() || turn(b.start(), a.start()) <= b.width()
-}
-
 impl Strand {
-    fn new(ring: &Ring, arc: &Arc) -> Strand {
+    fn new(ring: &Slice, arc: &Arc) -> Strand {
         let mut strand = Strand {
             inner: ring.inner,
             outer: ring.outer,
@@ -84,18 +77,15 @@ impl Strand {
         strand
     }
 
-    fn push(&mut self, ring: &Ring, arc: &Arc) {
+    fn push(&mut self, ring: &Slice, arc: &Arc) {
         let middle = 0.5 * (arc.start() + arc.end());
         let previous = self
             .rows
             .last()
             .map_or(middle, |row| 0.5 * (row[1] + row[2]));
         let turns = TAU * ((previous - middle) / TAU).round();
-        self.rows.push([
-            0.5 * (ring.inner + ring.outer),
-            arc.start() + turns,
-            arc.end() + turns,
-        ]);
+        self.rows
+            .push([ring.at, arc.start() + turns, arc.end() + turns]);
         self.outer = ring.outer;
         self.last = *arc;
     }
@@ -123,6 +113,7 @@ impl Strand {
 mod tests {
     use super::*;
     use crate::angle::AngleSet;
+    use crate::workspace::Ring;
 
     fn ring(k: usize, arcs: &[[f64; 2]]) -> Ring {
         let inner = 1.0 + 0.1 * k as f64;

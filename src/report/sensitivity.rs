@@ -1,11 +1,11 @@
 //! How much the score depends on each limit near the optimum.
 
+use super::canvas::Point;
 use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, dashed, legend};
 use super::number::{joint_symbol, with_unit};
 use super::panel::{BOTTOM, Panel, left, range};
-use super::raster::Point;
 use super::style::{BLUE, COLUMN, GREEN, GREY, MARGIN, NORMAL, VERMILLION};
 use super::table::{Table, cell, column};
 use super::ticks::{self, Tick};
@@ -175,6 +175,9 @@ impl Sensitivity {
 
     fn draw_legend(&self, canvas: &mut Canvas) {
         let sides = self.sides();
+        if sides.is_empty() {
+            return;
+        }
         let mut entries: Vec<(Swatch, &str)> = sides
             .iter()
             .map(|side| (Swatch::Line(side.colour()), side.name()))

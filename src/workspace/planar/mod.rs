@@ -10,8 +10,11 @@ mod post_failure;
 mod quadrature;
 mod reach;
 mod region;
+mod resolution;
 mod sweep;
+mod wrist;
 mod wrist_slice;
 
-pub use pose::{PlanarPose, PoseResolution};
+pub use pose::PlanarPose;
 pub use position::{PlanarArm, PlanarPosition};
+pub use resolution::PoseResolution;

@@ -7,6 +7,7 @@
 //! a limit (the wrist on a circle around the elbow), joint 3 at a limit (links b and c rigid).
 
 use super::chain::HELD_WIDTH;
+use super::circle::Circle;
 use crate::angle::{Arc, turn, wrap};
 use crate::workspace::JointLimit;
 use nalgebra::Complex;
@@ -93,6 +94,44 @@ impl ThreeLinks {
             elbow_stops,
             rigid_ends: ends(limits[2]).map(|angle| rigid(b, c, angle)).collect(),
         }
+    }
+
+    /// Circles on which the structure of the directions can change, for a chain carried by a link
+    /// of length `first` along the x axis: every circle that the end describes with some joints at
+    /// a limit and the others in line with it.
+    pub fn critical_circles(&self, first: f64) -> Vec<Circle> {
+        let [a, b, c] = self.lengths;
+        let ends = |joint: usize| {
+            let limit = self.limits[joint];
+            let count = if limit.is_full() { 0 } else { 2 };
+            [limit.lower, limit.upper].into_iter().take(count)
+        };
+        let rigid = |length: f64, angle: f64, tip: f64| length + Complex::from_polar(tip, angle);
+        let mut outer: Vec<f64> = ends(2).map(|angle| rigid(b, angle, c).norm()).collect();
+        outer.extend([b + c, (b - c).abs()]);
+        let axis = |radius: &f64| Circle::new(Complex::new(a, 0.0), *radius);
+        let mut circles: Vec<Circle> = outer.iter().map(axis).collect();
+        circles.extend(ends(1).map(|angle| Circle::new(rigid(a, angle, b), c)));
+        let mut radii: Vec<f64> = circles
+            .iter()
+            .flat_map(|circle| [circle.nearest(), circle.farthest()])
+            .collect();
+        for bend in ends(1) {
+            let vertex = |angle| (a + Complex::from_polar(1.0, bend) * rigid(b, angle, c)).norm();
+            radii.extend(ends(2).map(vertex));
+        }
+        let base = Complex::new(first, 0.0);
+        let around = radii.iter().map(|&radius| Circle::new(base, radius));
+        let mut all: Vec<Circle> = around.collect();
+        for angle in ends(0) {
+            let turn = Complex::from_polar(1.0, angle);
+            all.extend(
+                circles
+                    .iter()
+                    .map(|circle| Circle::new(base + turn * circle.centre, circle.radius)),
+            );
+        }
+        all
     }
 
     /// The arcs of ψ − arg `end` for which the chain reaches `end`.

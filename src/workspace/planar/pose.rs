@@ -5,75 +5,19 @@
 //! of two closed forms; otherwise it is one integral over β of closed forms. Panels of r are split
 //! at every radius where m jumps, and refined adaptively.
 
+use super::circle::Circle;
 use super::orientation::ThreeLinks;
 use super::position::{PlanarArm, PlanarPosition};
 use super::post_failure::{LockedJoint1, annulus, annulus_area, locked_joint_radii, radial_gate};
 use super::quadrature::{flattened_midpoints, integrate};
 use super::reach::PreFailure;
 use super::region::sort_radii;
-use super::wrist_slice::{Directions, SweepTable, three_links};
-use crate::angle::AngleSet;
-use crate::workspace::{ArtificialLimits, Estimate, FailureSet, JointLimit, WorkspaceSizes};
+use super::resolution::PoseResolution;
+use super::wrist::Wrist;
+use super::wrist_slice::{Directions, Sweep, SweepTable, three_links};
+use crate::angle::{AngleSet, Arc, turn};
+use crate::workspace::{Estimate, JointLimit, WorkspaceSizes};
 use std::f64::consts::TAU;
-
-/// How finely a pose workspace is computed.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct PoseResolution {
-    /// Relative error at which the radial quadrature stops. Too large: an optimiser climbs the
-    /// noise; too small: time grows, while the bearing nodes bound the accuracy. Default 3e-4.
-    pub tolerance: f64,
-    /// Bearings β per full circle at which the set of γ is computed. Default 64.
-    pub bearings: usize,
-    /// Slices per full circle that joint 1 sweeps (five joints only). Default 128.
-    pub slices: usize,
-    /// Radial panels after which refinement stops whatever the error. Default 200.
-    pub max_panels: usize,
-}
-
-impl Default for PoseResolution {
-    fn default() -> Self {
-        PoseResolution {
-            tolerance: 3e-4,
-            bearings: 64,
-            slices: 128,
-            max_panels: 200,
-        }
-    }
-}
-
-impl PoseResolution {
-    /// Settings that keep the error of most workspaces within the relative `tolerance`: the error
-    /// of the bearings and slices falls with the square of their number.
-    pub fn for_tolerance(tolerance: f64) -> PoseResolution {
-        let default = PoseResolution::default();
-        let finer = (1e-3 / tolerance).sqrt().clamp(0.5, 16.0);
-        PoseResolution {
-            tolerance: 0.3 * tolerance,
-            bearings: (default.bearings as f64 * finer).ceil() as usize,
-            slices: (default.slices as f64 * finer).ceil() as usize,
-            max_panels: (default.max_panels as f64 * finer).ceil() as usize,
-        }
-    }
-
-    /// Coarse settings for a search whose winner is scored again: about 1 % in a third of the time.
-    pub fn coarse() -> PoseResolution {
-        PoseResolution {
-            tolerance: 2e-3,
-            bearings: 32,
-            slices: 64,
-            max_panels: 60,
-        }
-    }
-
-    fn doubled(self) -> PoseResolution {
-        PoseResolution {
-            tolerance: 0.5 * self.tolerance,
-            bearings: 2 * self.bearings,
-            slices: 2 * self.slices,
-            max_panels: 2 * self.max_panels,
-        }
-    }
-}
 
 /// Workspaces of pose tasks in the plane. Keeps its buffers between evaluations.
 #[derive(Clone, Debug, Default)]
@@ -82,17 +26,30 @@ pub struct PlanarPose {
     forward: PreFailure,
     backward: PreFailure,
     chain: Option<ThreeLinks>,
+    critical: Vec<Circle>,
     table: SweepTable,
 }
 
-/// The wrist chain seen from joint 1 and, mirrored, from joint n.
-struct Wrist {
-    lengths: Vec<f64>,
-    limits: ArtificialLimits,
-    failures: FailureSet,
-    reversed_lengths: Vec<f64>,
-    reversed_limits: ArtificialLimits,
-    last: JointLimit,
+/// m(r) is probed for a jump this share of the outer radius to either side.
+const JUMP_PROBE: f64 = 1e-6;
+
+/// Relative change of m(r) across a probe that counts as a jump: a root opens by √1e-6 there.
+const JUMP_SHARE: f64 = 2e-3;
+
+/// Fewest bearings between two jumps.
+const LEAST_BEARINGS: usize = 4;
+
+/// The parts of an arc between the `jumps` that lie on it.
+fn pieces(arc: &Arc, jumps: &[f64]) -> Vec<Arc> {
+    let mut cuts: Vec<f64> = jumps
+        .iter()
+        .map(|&jump| turn(arc.start(), jump))
+        .filter(|&cut| cut < arc.width())
+        .collect();
+    cuts.extend([0.0, arc.width()]);
+    sort_radii(&mut cuts, 1e-9);
+    let piece = |pair: &[f64]| Arc::new(arc.start() + pair[0], pair[1] - pair[0]);
+    cuts.windows(2).map(piece).collect()
 }
 
 /// Which of the workspaces to intersect.
@@ -222,7 +179,11 @@ impl PlanarPose {
         let mirrored = &wrist.reversed_limits;
         self.backward
             .rebuild(&wrist.reversed_lengths, mirrored, parts.radii);
-        self.chain = Some(three_links(&wrist.lengths, wrist.limits.joints()));
+        let chain = three_links(&wrist.lengths, wrist.limits.joints());
+        // A chain of four carries the three links on its first; a chain of three starts at joint 1.
+        let carried = wrist.lengths.len() == 4;
+        self.critical = chain.critical_circles(if carried { wrist.lengths[0] } else { 0.0 });
+        self.chain = Some(chain);
     }
 
     fn volume(&mut self, wrist: &Wrist, parts: Parts) -> Estimate {
@@ -230,7 +191,8 @@ impl PlanarPose {
             return Estimate::default();
         }
         self.prepare(wrist, parts);
-        let breaks = self.breaks(parts);
+        let mut breaks = self.breaks(parts);
+        self.add_jumps(wrist, parts, &mut breaks);
         let PoseResolution {
             tolerance,
             max_panels,
@@ -269,8 +231,38 @@ impl PlanarPose {
         breaks
     }
 
-    /// The β that W₀ and W₁ allow at `r`, and the γ that W_n allows.
+    /// Adds the radii at which a part of the self-motion appears or ends, where m(r) jumps there.
+    fn add_jumps(&mut self, wrist: &Wrist, parts: Parts, breaks: &mut Vec<f64>) {
+        let free = wrist.limits.joints()[0].is_full() || wrist.last.is_full();
+        if free || !parts.pre_failure {
+            return;
+        }
+        let [inner, outer] = parts.radii;
+        let extremes = self
+            .critical
+            .iter()
+            .flat_map(|c| [c.nearest(), c.farthest()]);
+        let off = JUMP_PROBE * outer;
+        let mut radii: Vec<f64> = extremes
+            .filter(|&r| inner + off < r && r < outer - off)
+            .collect();
+        sort_radii(&mut radii, 1e-9 * outer);
+        for r in radii {
+            let below = self.measure(wrist, parts, r - off);
+            let above = self.measure(wrist, parts, r + off);
+            if (above - below).abs() > JUMP_SHARE * (above + below) {
+                breaks.push(r);
+            }
+        }
+        sort_radii(breaks, 1e-9 * outer);
+    }
+
+    /// The β that W₀ and W₁ allow at `r`, and the γ that W_n allows; none if another W_j forbids
+    /// `r`.
     fn outer_sets(&self, parts: Parts, r: f64) -> (AngleSet, AngleSet) {
+        if r < parts.radii[0] || r > parts.radii[1] {
+            return (AngleSet::empty(), AngleSet::empty());
+        }
         let of = |locked: Option<LockedJoint1>| {
             locked.map_or(AngleSet::full(), |locked| locked.rotation_set(r))
         };
@@ -295,13 +287,16 @@ impl PlanarPose {
         if let Directions::Constant(set) = &directions {
             return beta.measure() * set.overlap(&gamma);
         }
+        let bearings = self.resolution.bearings;
+        let jumps = directions.jumps(&beta);
         let mut measure = 0.0;
         for arc in beta.arcs().iter().filter(|arc| arc.width() > 0.0) {
-            let share = arc.width() / TAU;
-            let count = (share * self.resolution.bearings as f64).ceil() as usize;
-            for (x, weight) in flattened_midpoints(count.max(6)) {
-                let set = directions.at(arc.start() + x * arc.width());
-                measure += weight * arc.width() * set.overlap(&gamma);
+            for piece in pieces(arc, &jumps) {
+                let count = (piece.width() / TAU * bearings as f64).ceil() as usize;
+                for (x, weight) in flattened_midpoints(count + LEAST_BEARINGS) {
+                    let set = directions.at(piece.start() + x * piece.width());
+                    measure += weight * piece.width() * set.overlap(&gamma);
+                }
             }
         }
         measure
@@ -313,7 +308,13 @@ impl PlanarPose {
             && !wrist.last.is_full();
         if let Some(chain) = self.chain.as_ref().filter(|_| swept) {
             let slices = self.resolution.slices;
-            self.table.rebuild(chain, wrist.lengths[0], r, slices);
+            let bearings = self.forward.tail_at(r);
+            let sweep = Sweep {
+                chain,
+                first_link: wrist.lengths[0],
+                critical: &self.critical,
+            };
+            self.table.rebuild(sweep, r, &bearings, slices);
         }
     }
 
@@ -325,6 +326,7 @@ impl PlanarPose {
             _ if joint_1.is_full() => Directions::Constant(self.backward.set_at(r)),
             Some(chain) if wrist.lengths.len() == 3 => Directions::Direct {
                 chain,
+                critical: &self.critical,
                 last: wrist.last.arc(),
                 radius: r,
             },
@@ -337,27 +339,6 @@ impl PlanarPose {
                 table: &self.table,
             },
             None => Directions::Constant(AngleSet::empty()),
-        }
-    }
-}
-
-impl Wrist {
-    fn new(arm: PlanarArm<'_>) -> Wrist {
-        let n = arm.lengths.len();
-        debug_assert!((4..=5).contains(&n));
-        let lengths = arm.lengths[..n - 1].to_vec();
-        let joints = arm.limits.joints();
-        let numbers: Vec<usize> = arm.failures.numbers().filter(|&j| j < n).collect();
-        let reversed = std::iter::once(joints[n - 1])
-            .chain(joints[1..n - 1].iter().rev().copied())
-            .collect();
-        Wrist {
-            reversed_lengths: lengths.iter().rev().copied().collect(),
-            lengths,
-            limits: ArtificialLimits::new(joints[..n - 1].to_vec()),
-            failures: FailureSet::of(n - 1, &numbers),
-            reversed_limits: ArtificialLimits::new(reversed),
-            last: joints[n - 1],
         }
     }
 }
@@ -387,5 +368,40 @@ fn scaled(estimate: Estimate, factor: f64) -> Estimate {
     Estimate {
         value: factor * estimate.value,
         error: factor * estimate.error,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workspace::{ArtificialLimits, FailureSet};
+    use std::f64::consts::PI;
+
+    /// Links 2 and 3 cancel, so the wrist chain is links 1 and 4, and two wrist bearings remain.
+    /// Joints 1 and 5 turn them about: |A₁|·|A₅|, if the directions of both lie apart or one only
+    /// is within reach of joints 2 and 4.
+    #[test]
+    fn a_joint_held_folded_on_equal_links_leaves_the_rest_of_the_chain() {
+        let limits = ArtificialLimits::new(vec![
+            JointLimit::new(2.40917, 3.85759),
+            JointLimit::new(2.50255, 3.78064),
+            JointLimit::new(PI, PI),
+            JointLimit::new(-1.46406, -0.80902),
+            JointLimit::new(-2.86093, 2.58175),
+        ]);
+        let failures = FailureSet::of(5, &[2]);
+        let arm = PlanarArm {
+            lengths: &[1.0; 5],
+            limits: &limits,
+            failures: &failures,
+        };
+        let mut estimator = PlanarPose::new(PoseResolution::default());
+        let measure = estimator.wrist_measure(arm, 0.993_805_808_628_316_4);
+        let joints = limits.joints();
+        let expected = joints[0].width() * joints[4].width();
+        assert!(
+            (measure - expected).abs() < 1e-3 * expected,
+            "{measure} {expected}"
+        );
     }
 }

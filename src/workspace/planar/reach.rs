@@ -57,8 +57,13 @@ impl PreFailure {
 
     /// W₀(r) at one radius from the panels.
     pub fn set_at(&self, r: f64) -> AngleSet {
+        self.tail_at(r).sum(&self.joint_1().arc())
+    }
+
+    /// E(r) at one radius from the panels.
+    pub fn tail_at(&self, r: f64) -> AngleSet {
         let tail = self.tail().map(|tail| tail.set_at(r));
-        tail.unwrap_or_default().sum(&self.joint_1().arc())
+        tail.unwrap_or_default()
     }
 
     /// W₀(r) at one radius by direct classification, independent of the panels.

@@ -5,11 +5,12 @@
 //! (arg z, θ₂ + … + θ_{n−1} − arg z) of the wrist chain behind joint 1. W₁ restricts β, W_n
 //! restricts γ, the other W_j restrict r.
 
+use super::circle::{Circle, Side};
 use super::orientation::{ElbowArc, ElbowArcs, ThreeLinks};
 use crate::angle::{AngleSet, Arc, turn, wrap};
 use crate::workspace::JointLimit;
 use nalgebra::Complex;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// Arcs of one elbow on neighbouring slices belong together if their middles are this close
 /// (radians): far more than a slice apart, far less than to an arc across the circle.
@@ -23,6 +24,7 @@ pub(super) enum Directions<'a> {
     /// Four joints: the wrist chain itself has three, its directions are closed forms.
     Direct {
         chain: &'a ThreeLinks,
+        critical: &'a [Circle],
         last: Arc,
         radius: f64,
     },
@@ -38,6 +40,33 @@ pub(super) enum Directions<'a> {
 }
 
 impl Directions<'_> {
+    /// Bearings at which the set of γ may jump, because an arc of directions appears or ends in
+    /// what joint 1 sweeps; `over` are the bearings of interest.
+    pub fn jumps(&self, over: &AngleSet) -> Vec<f64> {
+        match self {
+            Directions::Constant(_) => Vec::new(),
+            Directions::Direct {
+                chain,
+                critical,
+                radius,
+                ..
+            } => {
+                let at = |beta| structure(&chain.directions(Complex::from_polar(*radius, beta)));
+                let arcs = over.arcs().iter();
+                let marks = arcs.flat_map(|arc| marks_within(arc, critical, *radius));
+                let changes = |mark: &f64| {
+                    let [before, behind] = beside(*mark);
+                    at(before) != at(behind)
+                };
+                marks.filter(changes).collect()
+            }
+            Directions::Swept { joint_1, table, .. } => {
+                let ends = |&event: &f64| [event + joint_1.lower, event + joint_1.upper];
+                table.events.iter().flat_map(ends).collect()
+            }
+        }
+    }
+
     /// The γ of W₀ at bearing β of the wrist.
     pub fn at(&self, beta: f64) -> AngleSet {
         match self {
@@ -46,6 +75,7 @@ impl Directions<'_> {
                 chain,
                 last,
                 radius,
+                ..
             } => {
                 let arcs = chain.directions(Complex::from_polar(*radius, beta));
                 AngleSet::from_arcs(arcs.iter().map(|found| found.arc)).sum(last)
@@ -81,27 +111,126 @@ fn directions_behind(chain: &ThreeLinks, first_link: f64, r: f64, bearing: f64) 
     arcs
 }
 
-/// Slices of D(r) at equally spaced bearings, with unions over windows of 1, 2, 4, … of them.
-#[derive(Clone, Debug, Default)]
-pub(super) struct SweepTable {
-    slices: Vec<ElbowArcs>,
-    /// `unions[0][k]` covers bearings from slice k to slice k + 1.
-    unions: Vec<Vec<AngleSet>>,
+/// Three links carried by a first one that joint 1 turns.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Sweep<'a> {
+    pub chain: &'a ThreeLinks,
+    pub first_link: f64,
+    /// Circles where the structure of the chain's directions can change.
+    pub critical: &'a [Circle],
 }
 
+/// Slices of D(r) at bearings spread over the arcs of E(r), denser towards their ends, with
+/// unions over windows of 1, 2, 4, … neighbours.
+#[derive(Clone, Debug, Default)]
+pub(super) struct SweepTable {
+    /// Start of the first arc; `offsets` count from here.
+    base: f64,
+    /// Bearings of the slices, ascending in [0, 2π).
+    offsets: Vec<f64>,
+    slices: Vec<ElbowArcs>,
+    /// `unions[0][k]` covers bearings from slice k to slice k + 1, cyclically.
+    unions: Vec<Vec<AngleSet>>,
+    /// Bearings at which an arc appears, ends, splits or merges.
+    events: Vec<f64>,
+}
+
+/// The first and last slice of an arc of E(r) lie this far inside it (radians): at its very end
+/// round-off decides whether the chain reaches at all.
+const INSET: f64 = 1e-9;
+
+/// Slices on either side of a bearing at which the structure can change (radians).
+const BESIDE: f64 = 1e-7;
+
+/// Halvings between two slices whose arcs move far.
+const REFINEMENTS: usize = 6;
+
+/// Arcs move at most this many radians between neighbouring slices, divided by the number of
+/// slices a full circle gets. Where the wrist passes joint 2, directions turn by π at once.
+const STRIDE: f64 = 16.0;
+
+/// Fewest slices of one arc of E(r).
+const LEAST_SLICES: usize = 12;
+
 impl SweepTable {
-    pub fn rebuild(&mut self, chain: &ThreeLinks, first_link: f64, r: f64, count: usize) {
+    /// Slices for the wrist radius `r`, where the chain behind joint 1 reaches `bearings`; about
+    /// `count` for a full circle.
+    pub fn rebuild(&mut self, sweep: Sweep<'_>, r: f64, bearings: &AngleSet, count: usize) {
+        self.offsets.clear();
         self.slices.clear();
-        let step = TAU / count as f64;
-        let bearings = (0..count).map(|k| k as f64 * step);
-        let slices = bearings.map(|bearing| directions_behind(chain, first_link, r, bearing));
-        self.slices.extend(slices);
+        self.events.clear();
+        self.unions.truncate(1);
         self.unions.resize_with(1, Vec::new);
         self.unions[0].clear();
-        for k in 0..count {
-            let link = linked(&self.slices[k], &self.slices[(k + 1) % count]);
-            self.unions[0].push(link);
+        let arcs = bearings.arcs();
+        let Some(first) = arcs.first() else {
+            return;
+        };
+        self.base = first.start();
+        for arc in arcs {
+            let from = self.slices.len();
+            self.add_slices(sweep, r, arc, count);
+            for k in from..self.slices.len() - 1 {
+                let link = linked(&self.slices[k], &self.slices[k + 1]);
+                self.unions[0].push(link);
+            }
+            // Nothing is reached between this arc and the next.
+            self.unions[0].push(AngleSet::empty());
         }
+        if bearings.is_full() {
+            let last = self.slices.len() - 1;
+            self.unions[0][last] = linked(&self.slices[last], &self.slices[0]);
+        }
+        self.double();
+    }
+
+    fn add_slices(&mut self, sweep: Sweep<'_>, r: f64, arc: &Arc, count: usize) {
+        let slice = |bearing: f64| directions_behind(sweep.chain, sweep.first_link, r, bearing);
+        let mut bearings: Vec<f64> = spread(arc, count).collect();
+        bearings.extend(marks_within(arc, sweep.critical, r).flat_map(beside));
+        bearings.sort_unstable_by(f64::total_cmp);
+        let mut last: Option<f64> = None;
+        for bearing in bearings {
+            let next = slice(bearing);
+            if let Some(from) = last {
+                self.fill(&slice, from, (bearing, &next), STRIDE / count as f64, 0);
+            }
+            self.push(bearing, next);
+            last = Some(bearing);
+        }
+    }
+
+    /// Adds slices between the last one, at bearing `from`, and `to`, until the arcs of neighbours
+    /// move less than `stride`; notes a change of structure.
+    fn fill(
+        &mut self,
+        slice: &impl Fn(f64) -> ElbowArcs,
+        from: f64,
+        to: (f64, &ElbowArcs),
+        stride: f64,
+        depth: usize,
+    ) {
+        let Some(last) = self.slices.last() else {
+            return;
+        };
+        if structure(last) != structure(to.1) {
+            self.events.push(0.5 * (from + to.0));
+        } else if depth < REFINEMENTS && movement(last, to.1) > stride {
+            let middle = 0.5 * (from + to.0);
+            let between = slice(middle);
+            self.fill(slice, from, (middle, &between), stride, depth + 1);
+            self.push(middle, between);
+            self.fill(slice, middle, to, stride, depth + 1);
+        }
+    }
+
+    fn push(&mut self, bearing: f64, slice: ElbowArcs) {
+        self.offsets.push(bearing - self.base);
+        self.slices.push(slice);
+    }
+
+    fn double(&mut self) {
+        let count = self.slices.len();
         let mut length = 1;
         while 2 * length <= count {
             let below = &self.unions[self.unions.len() - 1];
@@ -112,22 +241,25 @@ impl SweepTable {
         }
     }
 
-    /// Union of D's slices over the window of `width` from bearing `from`, whose exact slices
-    /// at both ends are given.
+    /// Union of D's slices over the window of `width` < 2π from bearing `from`, whose exact
+    /// slices at both ends are given.
     fn window(&self, from: f64, width: f64, first: &ElbowArcs, last: &ElbowArcs) -> AngleSet {
         let count = self.slices.len();
-        let step = TAU / count as f64;
-        let lead = turn(from, (turn(0.0, from) / step).ceil() * step);
-        // A bearing on a slice up to round-off must not wait for a whole turn.
-        let lead = if lead > TAU - 1e-9 { 0.0 } else { lead };
-        if width < lead {
+        let start = turn(self.base, from);
+        let inner = self.offsets.partition_point(|&offset| offset < start);
+        let end = start + width;
+        let outer = if end < TAU {
+            self.offsets.partition_point(|&offset| offset <= end)
+        } else {
+            count + self.offsets.partition_point(|&offset| offset <= end - TAU)
+        };
+        if outer <= inner {
             return linked(first, last);
         }
-        let start = ((turn(0.0, from) + lead) / step).round() as usize % count;
-        let cells = ((width - lead) / step) as usize;
-        let end = (start + cells) % count;
-        let ends = linked(first, &self.slices[start]).union(&linked(&self.slices[end], last));
-        ends.union(&self.range(start, cells.min(count)))
+        let (inner, cells) = (inner % count, outer - inner - 1);
+        let ends = linked(first, &self.slices[inner])
+            .union(&linked(&self.slices[(outer - 1) % count], last));
+        ends.union(&self.range(inner, cells.min(count)))
     }
 
     /// Union of `cells` neighbouring cells from cell `start`.
@@ -141,6 +273,64 @@ impl SweepTable {
         let second = (start + cells - (1 << level)) % count;
         row[start].union(&row[second])
     }
+}
+
+/// Bearings spread over an arc, denser towards its ends; about `count` for a full circle.
+fn spread(arc: &Arc, count: usize) -> impl Iterator<Item = f64> + use<> {
+    let arc = *arc;
+    let cells = (arc.width() / TAU * count as f64).ceil() as usize;
+    let cells = cells.max(LEAST_SLICES);
+    // The full circle needs no slice at its end, which is its start.
+    let nodes = if arc.is_full() { cells } else { cells + 1 };
+    (0..nodes).map(move |k| {
+        let t = k as f64 / cells as f64;
+        let share = if arc.is_full() {
+            t
+        } else {
+            0.5 - 0.5 * (PI * t).cos()
+        };
+        arc.start() + INSET + share * (arc.width() - 2.0 * INSET).max(0.0)
+    })
+}
+
+/// The bearings of an arc of |z| = `r` at which the structure can change, unwrapped from the arc's
+/// start.
+fn marks_within<'a>(
+    arc: &'a Arc,
+    critical: &'a [Circle],
+    r: f64,
+) -> impl Iterator<Item = f64> + 'a {
+    let crossing = critical.iter().filter(move |circle| circle.crosses(r));
+    let marks = crossing
+        .flat_map(move |circle| [Side::Left, Side::Right].map(|side| circle.polar_angle(r, side)));
+    let leads = marks.map(|mark| turn(arc.start(), mark));
+    let inside = move |lead: &f64| *lead > 2.0 * BESIDE && *lead < arc.width() - 2.0 * BESIDE;
+    leads.filter(inside).map(|lead| arc.start() + lead)
+}
+
+/// Just before and just behind a mark.
+fn beside(mark: f64) -> [f64; 2] {
+    [mark - BESIDE, mark + BESIDE]
+}
+
+/// Largest move of an arc's end between two slices, as far as their arcs have partners.
+fn movement(a: &ElbowArcs, b: &ElbowArcs) -> f64 {
+    let moves = a.iter().filter_map(|p| {
+        let same = b.iter().filter(|q| q.elbow_left == p.elbow_left);
+        let ends = same.map(|q| {
+            let start = wrap(q.arc.start() - p.arc.start()).abs();
+            let end = wrap(q.arc.end() - p.arc.end()).abs();
+            start.max(end)
+        });
+        ends.min_by(f64::total_cmp)
+    });
+    moves.fold(0.0, f64::max)
+}
+
+/// Number of arcs of either elbow.
+fn structure(slice: &ElbowArcs) -> [usize; 2] {
+    let left = slice.iter().filter(|found| found.elbow_left).count();
+    [left, slice.len() - left]
 }
 
 /// Union of two neighbouring slices and of what lies between arcs that belong together, so that
