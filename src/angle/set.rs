@@ -79,6 +79,12 @@ impl AngleSet {
 
     /// All angles that belong to either set.
     pub fn union(&self, other: &AngleSet) -> AngleSet {
+        if self.is_full() || other.is_empty() {
+            return self.clone();
+        }
+        if other.is_full() || self.is_empty() {
+            return other.clone();
+        }
         AngleSet::from_arcs(self.arcs.iter().chain(&other.arcs).copied())
     }
 

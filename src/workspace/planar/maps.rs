@@ -6,6 +6,7 @@ use super::post_failure::annulus;
 use crate::angle::AngleSet;
 use crate::workspace::{Ring, RingMap, ShareMap};
 use nalgebra::Complex;
+use rayon::prelude::*;
 use std::f64::consts::{PI, TAU};
 
 /// Bearings of the wrist around the circle for which a share map tabulates directions.
@@ -74,18 +75,20 @@ impl PlanarPose {
         let edge = |k: usize| {
             unrestricted[0] + (unrestricted[1] - unrestricted[0]) * k as f64 / radii as f64
         };
-        let mut share = Vec::with_capacity(radii * angles);
-        for row in 0..radii {
+        let row_of_shares = |row: usize| -> Vec<f64> {
             let r = 0.5 * (edge(row) + edge(row + 1));
             let orientations = orientations_at(r, last);
-            for column in 0..angles {
+            let at = |column: usize| {
                 let turned = -PI + (column as f64 + 0.5) * TAU / angles as f64;
                 let tolerant = orientations
                     .iter()
                     .filter(|o| contains(o.wrist, o.bearing + turned, o.direction));
-                share.push(tolerant.count() as f64 / ORIENTATIONS as f64);
-            }
-        }
+                tolerant.count() as f64 / ORIENTATIONS as f64
+            };
+            (0..angles).map(at).collect()
+        };
+        let rows: Vec<Vec<f64>> = (0..radii).into_par_iter().map(row_of_shares).collect();
+        let share = rows.concat();
         ShareMap {
             unrestricted,
             radius_edges: (0..=radii).map(edge).collect(),

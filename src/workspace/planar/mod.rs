@@ -17,4 +17,4 @@ mod wrist_slice;
 
 pub use pose::PlanarPose;
 pub use position::{PlanarArm, PlanarPosition};
-pub use resolution::PoseResolution;
+pub use resolution::{Kronrod, PoseResolution};

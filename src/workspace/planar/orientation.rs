@@ -143,11 +143,10 @@ impl ThreeLinks {
         if self.held.contains(&true) {
             self.stops_of_held_joint(distance, bearing, &mut stops);
             for &angle in &stops {
-                for elbow_left in [true, false] {
-                    if self.allows(distance, turned, angle, elbow_left) {
-                        let arc = Arc::point(angle);
-                        found.push(ElbowArc { arc, elbow_left });
-                    }
+                let allowed = self.allows(distance, turned, angle);
+                for (elbow_left, _) in [true, false].into_iter().zip(allowed).filter(|e| e.1) {
+                    let arc = Arc::point(angle);
+                    found.push(ElbowArc { arc, elbow_left });
                 }
             }
             return found;
@@ -159,9 +158,15 @@ impl ThreeLinks {
             *stop = wrap(*stop);
         }
         stops.sort_unstable_by(f64::total_cmp);
-        for elbow_left in [true, false] {
-            let allows = |angle| self.allows(distance, turned, angle, elbow_left);
-            push_runs(&stops, allows, elbow_left, &mut found);
+        // One test of a cell's middle answers for both elbows.
+        let inside: SmallVec<[[bool; 2]; 24]> = middles(&stops)
+            .map(|middle| match middle {
+                Some(angle) => self.allows(distance, turned, angle),
+                None => [false; 2],
+            })
+            .collect();
+        for (elbow, elbow_left) in [(0, true), (1, false)] {
+            push_runs(&stops, |cell| inside[cell][elbow], elbow_left, &mut found);
         }
         found
     }
@@ -208,25 +213,41 @@ impl ThreeLinks {
         }
     }
 
-    /// Whether the chain reaches (`distance`, 0) inside its limits with the last link at `angle`.
-    /// `turned` is the unit vector of the end's bearing, which joint 1's limits refer to.
-    fn allows(&self, distance: f64, turned: Complex<f64>, angle: f64, elbow_left: bool) -> bool {
+    /// Whether the chain reaches (`distance`, 0) inside its limits with the last link at `angle`,
+    /// for the left and the right elbow. `turned` is the unit vector of the end's bearing, which
+    /// joint 1's limits refer to.
+    fn allows(&self, distance: f64, turned: Complex<f64>, angle: f64) -> [bool; 2] {
         let [a, b, c] = self.lengths;
         let last = Complex::from_polar(1.0, angle);
         let wrist = distance - last * c;
         let wrist2 = wrist.norm_sqr();
         let cosine = (wrist2 - a * a - b * b) / (2.0 * a * b);
         if !(-1.0 - COSINE_SLACK..=1.0 + COSINE_SLACK).contains(&cosine) {
-            return false;
+            return [false; 2];
         }
         let sine = (1.0 - cosine * cosine).max(0.0).sqrt();
-        let second = Complex::new(cosine, if elbow_left { sine } else { -sine });
-        // Pointing along link 1 and |wrist|² long.
-        let first = wrist * (a + second * b).conj();
-        self.cones[1].contains(second, 1.0)
-            && self.cones[0].contains(first * turned, wrist2)
-            && self.cones[2].contains(last * (first * second).conj(), wrist2)
+        [sine, -sine].map(|sine| {
+            let second = Complex::new(cosine, sine);
+            if !self.cones[1].contains(second, 1.0) {
+                return false;
+            }
+            // Pointing along link 1 and |wrist|² long.
+            let first = wrist * (a + second * b).conj();
+            self.cones[0].contains(first * turned, wrist2)
+                && self.cones[2].contains(last * (first * second).conj(), wrist2)
+        })
     }
+}
+
+/// Middles of the cells between sorted `stops` around the circle; none for thin cells. Without
+/// stops the circle is one cell.
+fn middles(stops: &[f64]) -> impl Iterator<Item = Option<f64>> + '_ {
+    let whole = stops.is_empty().then_some(Some(PI));
+    let cells = (0..stops.len()).map(|k| {
+        let end = stops.get(k + 1).copied().unwrap_or(stops[0] + TAU);
+        (end - stops[k] > THIN_CELL).then_some(0.5 * (stops[k] + end))
+    });
+    whole.into_iter().chain(cells)
 }
 
 /// Directions ψ of a link of length `link` that ends at `base` (a distance along x) and starts
@@ -240,11 +261,17 @@ fn push_symmetric(base: f64, link: f64, reach: f64, turned: f64, stops: &mut Sma
     }
 }
 
-/// Appends the maximal runs of cells between sorted `stops` whose middle is allowed.
-fn push_runs(stops: &[f64], allows: impl Fn(f64) -> bool, elbow_left: bool, found: &mut ElbowArcs) {
+/// Appends the maximal runs of allowed cells between sorted `stops`; thin cells belong to the run
+/// before them.
+fn push_runs(
+    stops: &[f64],
+    allowed: impl Fn(usize) -> bool,
+    elbow_left: bool,
+    found: &mut ElbowArcs,
+) {
     let mut push = |arc| found.push(ElbowArc { arc, elbow_left });
     let Some(&first) = stops.first() else {
-        if allows(PI) {
+        if allowed(0) {
             push(Arc::FULL);
         }
         return;
@@ -253,11 +280,8 @@ fn push_runs(stops: &[f64], allows: impl Fn(f64) -> bool, elbow_left: bool, foun
     let mut opening = None;
     for k in 0..stops.len() {
         let (start, end) = (stops[k], stops.get(k + 1).copied().unwrap_or(first + TAU));
-        let inside = if end - start <= THIN_CELL {
-            run.is_some()
-        } else {
-            allows(0.5 * (start + end))
-        };
+        let thin = end - start <= THIN_CELL;
+        let inside = if thin { run.is_some() } else { allowed(k) };
         match (inside, run) {
             (true, None) => run = Some(start),
             (false, Some(from)) => {

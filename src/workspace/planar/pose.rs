@@ -9,15 +9,16 @@ use super::circle::Circle;
 use super::orientation::ThreeLinks;
 use super::position::{PlanarArm, PlanarPosition};
 use super::post_failure::{LockedJoint1, annulus, annulus_area, locked_joint_radii, radial_gate};
-use super::quadrature::{flattened_midpoints, integrate};
+use super::quadrature::{Kronrod, flattened_midpoints, integrate};
 use super::reach::PreFailure;
-use super::region::sort_radii;
+use super::region::sort_distinct;
 use super::resolution::PoseResolution;
 use super::wrist::Wrist;
 use super::wrist_slice::{Directions, Sweep, SweepTable, three_links};
 use crate::angle::{AngleSet, Arc, turn};
 use crate::workspace::{Estimate, JointLimit, WorkspaceSizes};
-use std::f64::consts::TAU;
+use rayon::prelude::*;
+use std::f64::consts::{PI, TAU};
 
 /// Workspaces of pose tasks in the plane. Keeps its buffers between evaluations.
 #[derive(Clone, Debug, Default)]
@@ -47,7 +48,7 @@ fn pieces(arc: &Arc, jumps: &[f64]) -> Vec<Arc> {
         .filter(|&cut| cut < arc.width())
         .collect();
     cuts.extend([0.0, arc.width()]);
-    sort_radii(&mut cuts, 1e-9);
+    sort_distinct(&mut cuts, 1e-9);
     let piece = |pair: &[f64]| Arc::new(arc.start() + pair[0], pair[1] - pair[0]);
     cuts.windows(2).map(piece).collect()
 }
@@ -129,8 +130,8 @@ impl PlanarPose {
         self.measure(&wrist, parts, r)
     }
 
-    /// For each wrist radius and each of `bearings` equally spaced β from −π, the fault-tolerant
-    /// set of γ.
+    /// For each wrist radius and each of `bearings` cells around the circle from −π, the
+    /// fault-tolerant set of γ at the cell's middle.
     pub fn direction_table(
         &mut self,
         arm: PlanarArm<'_>,
@@ -140,25 +141,38 @@ impl PlanarPose {
         let wrist = Wrist::new(arm);
         let parts = Parts::fault_tolerant(arm, &wrist);
         self.prepare(&wrist, parts);
-        let step = TAU / bearings as f64;
-        let row = |&r: &f64| {
-            let (beta, gamma) = self.outer_sets(parts, r);
-            if !beta.is_empty() {
-                self.refresh_table(&wrist, r);
+        let prepared = &*self;
+        radii
+            .par_iter()
+            .map_init(
+                || prepared.clone(),
+                |estimator, &r| estimator.direction_row(&wrist, parts, r, bearings),
+            )
+            .collect()
+    }
+
+    fn direction_row(
+        &mut self,
+        wrist: &Wrist,
+        parts: Parts,
+        r: f64,
+        bearings: usize,
+    ) -> Vec<AngleSet> {
+        let (beta, gamma) = self.outer_sets(parts, r);
+        if beta.is_empty() || gamma.is_empty() {
+            return vec![AngleSet::empty(); bearings];
+        }
+        self.refresh_table(wrist, r);
+        let directions = self.directions(wrist, parts, r);
+        let at = |k: usize| {
+            let angle = -PI + (k as f64 + 0.5) * TAU / bearings as f64;
+            if beta.contains(angle) {
+                directions.at(angle).intersection(&gamma)
+            } else {
+                AngleSet::empty()
             }
-            let directions = (!beta.is_empty()).then(|| self.directions(&wrist, parts, r));
-            let at = |k: usize| {
-                let angle = -std::f64::consts::PI + (k as f64 + 0.5) * step;
-                match &directions {
-                    Some(directions) if beta.contains(angle) => {
-                        directions.at(angle).intersection(&gamma)
-                    }
-                    _ => AngleSet::empty(),
-                }
-            };
-            (0..bearings).map(at).collect()
         };
-        radii.iter().map(row).collect()
+        (0..bearings).map(at).collect()
     }
 
     fn checked_volume(&mut self, wrist: &Wrist, parts: Parts) -> Estimate {
@@ -192,13 +206,16 @@ impl PlanarPose {
         }
         self.prepare(wrist, parts);
         let mut breaks = self.breaks(parts);
-        self.add_jumps(wrist, parts, &mut breaks);
+        if self.resolution.rule == Kronrod::Fifteen {
+            self.add_jumps(wrist, parts, &mut breaks);
+        }
         let PoseResolution {
             tolerance,
             max_panels,
+            rule,
             ..
         } = self.resolution;
-        let integral = integrate(&breaks, tolerance, max_panels, |r| {
+        let integral = integrate(rule, &breaks, tolerance, max_panels, |r| {
             r * self.measure(wrist, parts, r)
         });
         Estimate {
@@ -227,7 +244,7 @@ impl PlanarPose {
                 tail.events().iter().copied().for_each(&mut add);
             }
         }
-        sort_radii(&mut breaks, 1e-9 * outer);
+        sort_distinct(&mut breaks, 1e-9 * outer);
         breaks
     }
 
@@ -246,7 +263,7 @@ impl PlanarPose {
         let mut radii: Vec<f64> = extremes
             .filter(|&r| inner + off < r && r < outer - off)
             .collect();
-        sort_radii(&mut radii, 1e-9 * outer);
+        sort_distinct(&mut radii, 1e-9 * outer);
         for r in radii {
             let below = self.measure(wrist, parts, r - off);
             let above = self.measure(wrist, parts, r + off);
@@ -254,7 +271,7 @@ impl PlanarPose {
                 breaks.push(r);
             }
         }
-        sort_radii(breaks, 1e-9 * outer);
+        sort_distinct(breaks, 1e-9 * outer);
     }
 
     /// The β that W₀ and W₁ allow at `r`, and the γ that W_n allows; none if another W_j forbids
@@ -310,6 +327,7 @@ impl PlanarPose {
             let slices = self.resolution.slices;
             let bearings = self.forward.tail_at(r);
             let sweep = Sweep {
+                last: wrist.last.arc(),
                 chain,
                 first_link: wrist.lengths[0],
                 critical: &self.critical,
@@ -375,7 +393,6 @@ fn scaled(estimate: Estimate, factor: f64) -> Estimate {
 mod tests {
     use super::*;
     use crate::workspace::{ArtificialLimits, FailureSet};
-    use std::f64::consts::PI;
 
     /// Links 2 and 3 cancel, so the wrist chain is links 1 and 4, and two wrist bearings remain.
     /// Joints 1 and 5 turn them about: |A₁|·|A₅|, if the directions of both lie apart or one only

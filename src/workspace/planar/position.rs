@@ -9,7 +9,7 @@
 use super::circle::{Circle, Side};
 use super::post_failure::{LockedJoint1, annulus, annulus_area, locked_joint_radii, radial_gate};
 use super::reach::PreFailure;
-use super::region::{Panel, Region, sort_radii};
+use super::region::{Panel, Region, sort_distinct};
 use super::sweep::{CellSweep, Edge, EdgeArc};
 use crate::angle::{AngleSet, turn};
 use crate::workspace::{ArtificialLimits, Estimate, FailureSet, JointLimit, WorkspaceSizes};
@@ -138,7 +138,7 @@ impl PlanarPosition {
         self.pre_failure
             .rebuild(arm.lengths, arm.limits, parts.radii);
         self.area_with(parts, |panel, _| radii.extend([panel[0], panel[1]]));
-        sort_radii(&mut radii, THIN_PANEL * parts.radii[1]);
+        sort_distinct(&mut radii, THIN_PANEL * parts.radii[1]);
         radii
     }
 
@@ -332,7 +332,7 @@ impl SubPanels {
             let critical = locked.critical_radii();
             let within = critical.into_iter().filter(|&r| inner < r && r < outer);
             self.radii.extend(within);
-            sort_radii(&mut self.radii, THIN_PANEL * outer);
+            sort_distinct(&mut self.radii, THIN_PANEL * outer);
         }
     }
 

@@ -136,7 +136,7 @@ impl Region {
         if !limit.is_full() {
             self.critical.extend([at(limit.lower), at(limit.upper)]);
         }
-        sort_radii(&mut self.critical, THIN_PANEL * self.reach);
+        sort_distinct(&mut self.critical, THIN_PANEL * self.reach);
         let allowed = limit.arc();
         for k in 1..self.critical.len() {
             let (inner, outer) = (self.critical[k - 1], self.critical[k]);
@@ -229,7 +229,7 @@ impl Region {
             }
         }
         critical.extend([range[0], range[1].min(self.reach)]);
-        sort_radii(critical, THIN_PANEL * self.reach);
+        sort_distinct(critical, THIN_PANEL * self.reach);
     }
 
     /// Finds the arcs of E in the middle of a panel and stores them by their edges.
@@ -346,8 +346,8 @@ impl Carrier<'_> {
     }
 }
 
-/// Sorts radii and drops those closer than `tolerance` to their predecessor.
-pub(super) fn sort_radii(radii: &mut Vec<f64>, tolerance: f64) {
-    radii.sort_unstable_by(f64::total_cmp);
-    radii.dedup_by(|next, kept| *next - *kept <= tolerance);
+/// Sorts numbers and drops those closer than `tolerance` to their predecessor.
+pub(super) fn sort_distinct(values: &mut Vec<f64>, tolerance: f64) {
+    values.sort_unstable_by(f64::total_cmp);
+    values.dedup_by(|next, kept| *next - *kept <= tolerance);
 }

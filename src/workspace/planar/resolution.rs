@@ -1,5 +1,7 @@
 //! How finely pose workspaces are computed.
 
+pub use super::quadrature::Kronrod;
+
 /// How finely a pose workspace is computed.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct PoseResolution {
@@ -13,6 +15,8 @@ pub struct PoseResolution {
     pub slices: usize,
     /// Radial panels after which refinement stops whatever the error. Default 200.
     pub max_panels: usize,
+    /// Rule on each radial panel. Default 15 points.
+    pub rule: Kronrod,
 }
 
 impl Default for PoseResolution {
@@ -22,6 +26,7 @@ impl Default for PoseResolution {
             bearings: 64,
             slices: 64,
             max_panels: 100,
+            rule: Kronrod::Fifteen,
         }
     }
 }
@@ -37,6 +42,7 @@ impl PoseResolution {
             bearings: (default.bearings as f64 * finer).ceil() as usize,
             slices: (default.slices as f64 * finer).ceil() as usize,
             max_panels: (default.max_panels as f64 * finer).ceil() as usize,
+            rule: default.rule,
         }
     }
 
@@ -48,6 +54,7 @@ impl PoseResolution {
             bearings: 32,
             slices: 32,
             max_panels: 40,
+            rule: Kronrod::Seven,
         }
     }
 
@@ -58,6 +65,7 @@ impl PoseResolution {
             bearings: 2 * self.bearings,
             slices: 2 * self.slices,
             max_panels: 2 * self.max_panels,
+            rule: Kronrod::Fifteen,
         }
     }
 }

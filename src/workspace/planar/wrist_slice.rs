@@ -7,6 +7,7 @@
 
 use super::circle::{Circle, Side};
 use super::orientation::{ElbowArc, ElbowArcs, ThreeLinks};
+use super::region::sort_distinct;
 use crate::angle::{AngleSet, Arc, turn, wrap};
 use crate::workspace::JointLimit;
 use nalgebra::Complex;
@@ -53,12 +54,8 @@ impl Directions<'_> {
             } => {
                 let at = |beta| structure(&chain.directions(Complex::from_polar(*radius, beta)));
                 let arcs = over.arcs().iter();
-                let marks = arcs.flat_map(|arc| marks_within(arc, critical, *radius));
-                let changes = |mark: &f64| {
-                    let [before, behind] = beside(*mark);
-                    at(before) != at(behind)
-                };
-                marks.filter(changes).collect()
+                arcs.flat_map(|arc| changes_within(arc, critical, *radius, at))
+                    .collect()
             }
             Directions::Swept { joint_1, table, .. } => {
                 let ends = |&event: &f64| [event + joint_1.lower, event + joint_1.upper];
@@ -91,9 +88,8 @@ impl Directions<'_> {
                 let slice = |bearing| directions_behind(chain, *first_link, *radius, bearing);
                 let from = slice(beta - joint_1.upper);
                 let to = slice(beta - joint_1.lower);
-                table
-                    .window(beta - joint_1.upper, joint_1.width(), &from, &to)
-                    .sum(last)
+                let start = beta - joint_1.upper;
+                table.window(start, joint_1.width(), [&from, &to], last)
             }
         }
     }
@@ -111,9 +107,10 @@ fn directions_behind(chain: &ThreeLinks, first_link: f64, r: f64, bearing: f64) 
     arcs
 }
 
-/// Three links carried by a first one that joint 1 turns.
+/// Three links carried by a first one that joint 1 turns, with the last joint's limits at the end.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Sweep<'a> {
+    pub last: Arc,
     pub chain: &'a ThreeLinks,
     pub first_link: f64,
     /// Circles where the structure of the chain's directions can change.
@@ -172,14 +169,15 @@ impl SweepTable {
             self.add_slices(sweep, r, arc, count);
             for k in from..self.slices.len() - 1 {
                 let link = linked(&self.slices[k], &self.slices[k + 1]);
-                self.unions[0].push(link);
+                self.unions[0].push(link.sum(&sweep.last));
             }
             // Nothing is reached between this arc and the next.
             self.unions[0].push(AngleSet::empty());
         }
         if bearings.is_full() {
             let last = self.slices.len() - 1;
-            self.unions[0][last] = linked(&self.slices[last], &self.slices[0]);
+            let link = linked(&self.slices[last], &self.slices[0]);
+            self.unions[0][last] = link.sum(&sweep.last);
         }
         self.double();
     }
@@ -187,7 +185,9 @@ impl SweepTable {
     fn add_slices(&mut self, sweep: Sweep<'_>, r: f64, arc: &Arc, count: usize) {
         let slice = |bearing: f64| directions_behind(sweep.chain, sweep.first_link, r, bearing);
         let mut bearings: Vec<f64> = spread(arc, count).collect();
-        bearings.extend(marks_within(arc, sweep.critical, r).flat_map(beside));
+        let structure_at = |bearing: f64| structure(&slice(bearing));
+        let changes = changes_within(arc, sweep.critical, r, structure_at);
+        bearings.extend(changes.into_iter().flat_map(beside));
         bearings.sort_unstable_by(f64::total_cmp);
         let mut last: Option<f64> = None;
         for bearing in bearings {
@@ -241,9 +241,15 @@ impl SweepTable {
         }
     }
 
-    /// Union of D's slices over the window of `width` < 2π from bearing `from`, whose exact
+    /// Union of D's slices ⊕ A_n over the window of `width` < 2π from bearing `from`, whose exact
     /// slices at both ends are given.
-    fn window(&self, from: f64, width: f64, first: &ElbowArcs, last: &ElbowArcs) -> AngleSet {
+    fn window(
+        &self,
+        from: f64,
+        width: f64,
+        [first, last]: [&ElbowArcs; 2],
+        last_joint: &Arc,
+    ) -> AngleSet {
         let count = self.slices.len();
         let start = turn(self.base, from);
         let inner = self.offsets.partition_point(|&offset| offset < start);
@@ -254,12 +260,16 @@ impl SweepTable {
             count + self.offsets.partition_point(|&offset| offset <= end - TAU)
         };
         if outer <= inner {
-            return linked(first, last);
+            return linked(first, last).sum(last_joint);
         }
         let (inner, cells) = (inner % count, outer - inner - 1);
+        let between = self.range(inner, cells.min(count));
+        if between.is_full() {
+            return between;
+        }
         let ends = linked(first, &self.slices[inner])
             .union(&linked(&self.slices[(outer - 1) % count], last));
-        ends.union(&self.range(inner, cells.min(count)))
+        between.union(&ends.sum(last_joint))
     }
 
     /// Union of `cells` neighbouring cells from cell `start`.
@@ -293,19 +303,35 @@ fn spread(arc: &Arc, count: usize) -> impl Iterator<Item = f64> + use<> {
     })
 }
 
-/// The bearings of an arc of |z| = `r` at which the structure can change, unwrapped from the arc's
-/// start.
-fn marks_within<'a>(
-    arc: &'a Arc,
-    critical: &'a [Circle],
+/// The bearings of an arc of |z| = `r` at which the structure changes, unwrapped from the arc's
+/// start. It can change where a critical circle crosses only, so one look between two neighbouring
+/// crossings finds every change.
+fn changes_within(
+    arc: &Arc,
+    critical: &[Circle],
     r: f64,
-) -> impl Iterator<Item = f64> + 'a {
-    let crossing = critical.iter().filter(move |circle| circle.crosses(r));
-    let marks = crossing
-        .flat_map(move |circle| [Side::Left, Side::Right].map(|side| circle.polar_angle(r, side)));
-    let leads = marks.map(|mark| turn(arc.start(), mark));
-    let inside = move |lead: &f64| *lead > 2.0 * BESIDE && *lead < arc.width() - 2.0 * BESIDE;
-    leads.filter(inside).map(|lead| arc.start() + lead)
+    structure_at: impl Fn(f64) -> [usize; 2],
+) -> Vec<f64> {
+    let mut leads: Vec<f64> = critical
+        .iter()
+        .filter(|circle| circle.crosses(r))
+        .flat_map(|circle| [Side::Left, Side::Right].map(|side| circle.polar_angle(r, side)))
+        .map(|mark| turn(arc.start(), mark))
+        .filter(|&lead| lead > 2.0 * BESIDE && lead < arc.width() - 2.0 * BESIDE)
+        .collect();
+    sort_distinct(&mut leads, 4.0 * BESIDE);
+    let middle = |from: f64, to: f64| arc.start() + 0.5 * (from + to);
+    let mut before = structure_at(middle(0.0, leads.first().copied().unwrap_or(arc.width())));
+    let mut changes = Vec::new();
+    for (k, &lead) in leads.iter().enumerate() {
+        let next = leads.get(k + 1).copied().unwrap_or(arc.width());
+        let behind = structure_at(middle(lead, next));
+        if behind != before {
+            changes.push(arc.start() + lead);
+        }
+        before = behind;
+    }
+    changes
 }
 
 /// Just before and just behind a mark.
