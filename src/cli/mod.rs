@@ -39,6 +39,9 @@ enum Command {
         /// A robot file
         #[arg(value_name = "DESIGN")]
         design: PathBuf,
+        /// Draw the robot as well, as PNG or SVG (planar robots)
+        #[arg(long, value_name = "FILE")]
+        out: Option<PathBuf>,
     },
     /// List the designs and studies under the current folder
     List,
@@ -72,7 +75,7 @@ pub fn main() -> ExitCode {
     let ending = match Arguments::parse().command {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { files } => check::check(&files),
-        Command::Show { design } => show::show(&design),
+        Command::Show { design, out } => show::show(&design, out.as_deref()),
         Command::List => list::list(),
         Command::Completions { shell } => completions(shell),
     };

@@ -3,15 +3,50 @@
 use super::{Ending, output};
 use crate::design::{Convention, Geometry, Joint, JointKind, Robot, TaskSpace, read_design};
 use crate::kinematics::reach;
+use crate::report::{RobotFigure, figure_png, figure_svg, write_bytes};
+use crate::workspace::planar::PlanarPosition;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Prints a summary of the robot at `path`.
-pub(super) fn show(path: &Path) -> Ending {
-    match read_design(path) {
-        Ok(robot) => output::print(&describe(&robot)),
-        Err(error) => output::bad_input(&error),
+/// Prints a summary of the robot at `path` and draws it to `out`, if given.
+pub(super) fn show(path: &Path, out: Option<&Path>) -> Ending {
+    let robot = match read_design(path) {
+        Ok(robot) => robot,
+        Err(error) => return output::bad_input(&error),
+    };
+    if let Some(out) = out
+        && let Err(ending) = draw(&robot, out)
+    {
+        return ending;
     }
+    output::print(&describe(&robot))
+}
+
+fn draw(robot: &Robot, out: &Path) -> Result<(), Ending> {
+    let refuse = |message: String| {
+        output::message(&format!("error: {message}"));
+        Ending::BadInput
+    };
+    let chain = robot
+        .planar_chain()
+        .map_err(|reason| refuse(format!("only planar robots are drawn: {reason}")))?;
+    let figure = RobotFigure {
+        title: robot.name.clone(),
+        links: &chain.lengths,
+        unrestricted: PlanarPosition::unrestricted_radii(&chain.lengths),
+    };
+    let bytes = match out.extension().and_then(|extension| extension.to_str()) {
+        Some("png") => figure_png(&figure),
+        Some("svg") => figure_svg(&figure).map(String::into_bytes),
+        _ => {
+            return Err(refuse(
+                "`--out` needs a name that ends in .png or .svg".into(),
+            ));
+        }
+    };
+    bytes
+        .and_then(|bytes| write_bytes(out, &bytes))
+        .map_err(|error| refuse(error.to_string()))
 }
 
 fn describe(robot: &Robot) -> String {

@@ -19,6 +19,8 @@ pub struct Sensitivity {
     pub score_label: String,
     /// Unit of the score, as in "m^2"; may be empty.
     pub unit: String,
+    /// What the marked point of every curve is, as in "optimum".
+    pub mark: String,
     /// Curves, drawn in one panel per joint.
     pub curves: Vec<SensitivityCurve>,
 }
@@ -74,7 +76,10 @@ impl Figure for Sensitivity {
     }
 
     fn caption(&self) -> String {
-        "Score against each artificial limit, the others held at the optimum (dashed).".into()
+        format!(
+            "Score against each artificial limit, the others held at the {} (dashed).",
+            self.mark
+        )
     }
 
     fn size(&self) -> Size {
@@ -182,7 +187,7 @@ impl Sensitivity {
             .iter()
             .map(|side| (Swatch::Line(side.colour()), side.name()))
             .collect();
-        entries.push((Swatch::Dashed(GREY), "optimum"));
+        entries.push((Swatch::Dashed(GREY), self.mark.as_str()));
         legend(
             canvas,
             [20.0, MARGIN + 2.0],

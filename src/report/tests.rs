@@ -102,6 +102,7 @@ fn sensitivity() -> Sensitivity {
     };
     Sensitivity {
         score_label: "S_F".into(),
+        mark: "optimum".into(),
         unit: "m^2".into(),
         curves: vec![
             curve(1, LimitSide::HalfWidth),

@@ -97,7 +97,12 @@ fn contains(map: &WorkspaceMap, point: Complex<f64>) -> bool {
 
 /// S_F along every limit through `limits` (between links), all other limits fixed. The limits of
 /// the first joint, and for pose tasks of the last, move symmetrically.
-pub(super) fn sensitivity(arm: &PlanarStudy, limits: &ArtificialLimits, unit: &str) -> Sensitivity {
+pub(super) fn sensitivity(
+    arm: &PlanarStudy,
+    limits: &ArtificialLimits,
+    unit: &str,
+    mark: &str,
+) -> Sensitivity {
     let joints = limits.joints();
     let mut curves = Vec::new();
     for k in 0..joints.len() {
@@ -116,6 +121,7 @@ pub(super) fn sensitivity(arm: &PlanarStudy, limits: &ArtificialLimits, unit: &s
     Sensitivity {
         score_label: "S_F".into(),
         unit: unit.into(),
+        mark: mark.into(),
         curves,
     }
 }

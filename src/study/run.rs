@@ -140,8 +140,13 @@ impl Outcome<'_> {
         let map = self.arm.map(&self.limits);
         tell(2, "varying the limits");
         let unit = self.study.task.unit();
+        let mark = match self.optimum {
+            Some(_) => "optimum",
+            None => "given limits",
+        };
         let figures = self.study.report.figures;
-        let sensitivity = figures.then(|| picture::sensitivity(&self.arm, &self.limits, unit));
+        let sensitivity =
+            figures.then(|| picture::sensitivity(&self.arm, &self.limits, unit, mark));
         tell(3, "writing the report");
         let notes = self.notes(&sizes);
         let finding = Finding {

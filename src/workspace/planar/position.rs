@@ -67,6 +67,11 @@ impl PlanarPosition {
         self.area(parts).value
     }
 
+    /// Radii [inner, outer] reachable with all joints free, metres.
+    pub fn unrestricted_radii(lengths: &[f64]) -> [f64; 2] {
+        annulus(lengths)
+    }
+
     /// S_0max, the area reachable with all joints free, m².
     pub fn unrestricted_size(lengths: &[f64]) -> f64 {
         annulus_area(annulus(lengths))
