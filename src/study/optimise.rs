@@ -1,4 +1,7 @@
-//! The search of an optimisation study: a global stage, then a local one at full resolution.
+//! The search of an optimisation study: a global stage, and after a genetic one a local one.
+//!
+//! Position tasks are scored exactly. Pose tasks are scored at the coarse resolution throughout,
+//! and the optimum is measured anew at the study's tolerance.
 
 use super::checkpoint::{Record, Stage, Store};
 use super::planar_arm::PlanarStudy;
@@ -24,11 +27,11 @@ const POLISHED: usize = 5;
 /// climbers that stall on one ridge at different places show each other its direction.
 const SPREAD: f64 = 0.01;
 
-/// Sweeps of the local stage of pose tasks, whose score costs milliseconds.
+/// Most sweeps for pose tasks, whose score costs milliseconds.
 const POSE_SWEEPS: usize = 25;
 
 /// Relative gain of a sweep below which pose tasks have converged: their score is good to 1e-3.
-const POSE_TOLERANCE: f64 = 1e-6;
+const POSE_TOLERANCE: f64 = 1e-5;
 
 /// The best design found and how.
 pub(super) struct Optimum {
@@ -92,8 +95,7 @@ pub(super) fn search(
 ) -> Result<Optimum, RunError> {
     let space = design_space(optimise, arm);
     let normalised = optimise.search.links.is_some();
-    let coarse = arm.objective(space.clone(), normalised, true);
-    let fine = arm.objective(space.clone(), normalised, false);
+    let objective = arm.objective(space.clone(), normalised);
     let start = optimise.start.as_ref();
     let starts: Vec<Vec<f64>> = start
         .map(|start| space.point(&arm.to_links(&start.to_limits())))
@@ -102,14 +104,14 @@ pub(super) fn search(
     let (global, polish) = match saved {
         Some(Stage::Polish { before, snapshot }) => (Ended::known(before), Some(snapshot)),
         other => {
-            let ended = global_stage(optimise, seed, starts, &coarse, other, session)?;
+            let ended = global_stage(optimise, arm, seed, starts, &objective, other, session)?;
             (ended, None)
         }
     };
     let polishes = match &optimise.optimiser {
         OptimiserSettings::Genetic(genetic) => genetic.polish,
-        // Coordinate ascent refines as it goes; only a coarse score needs the second stage.
-        OptimiserSettings::CoordinateAscent(_) => arm.is_pose(),
+        // Coordinate ascent refines as it goes.
+        OptimiserSettings::CoordinateAscent(_) => false,
     };
     if !polishes {
         let best = &global.candidates[0];
@@ -119,14 +121,15 @@ pub(super) fn search(
             local: None,
         });
     }
-    let starts = polish_starts(&global.candidates, &fine, seed);
-    let solver = CoordinateAscent::polish(&polish_settings(optimise, arm), seed ^ 1, starts);
+    let starts = polish_starts(&global.candidates, &objective, seed);
+    let solver =
+        CoordinateAscent::polish(&within_reason(Default::default(), arm), seed ^ 1, starts);
     let before = global.record.clone();
     let wrap = move |snapshot| Stage::Polish {
         before: before.clone(),
         snapshot,
     };
-    let local = stage(&fine, solver, polish, wrap, session, "polishing")?;
+    let local = stage(&objective, solver, polish, wrap, session, "polishing")?;
     Ok(Optimum {
         design: space.design(&local.candidates[0].x),
         global: global.record,
@@ -143,17 +146,19 @@ fn design_space(optimise: &Optimise, arm: &PlanarStudy) -> DesignSpace {
     DesignSpace::new(&arm.lengths, min_width, arm.is_pose(), links)
 }
 
-/// Settings of the local stage: those of the study as far as they apply.
-fn polish_settings(optimise: &Optimise, arm: &PlanarStudy) -> CoordinateAscentSettings {
-    let mut settings = match &optimise.optimiser {
-        OptimiserSettings::CoordinateAscent(ascent) => ascent_settings(ascent),
-        OptimiserSettings::Genetic(_) => CoordinateAscentSettings::default(),
-    };
-    if arm.is_pose() {
-        settings.max_sweeps = settings.max_sweeps.min(POSE_SWEEPS);
-        settings.tolerance = settings.tolerance.max(POSE_TOLERANCE);
+/// Settings for a score that costs milliseconds and is good to 1e-3, if it is one.
+fn within_reason(
+    settings: CoordinateAscentSettings,
+    arm: &PlanarStudy,
+) -> CoordinateAscentSettings {
+    if !arm.is_pose() {
+        return settings;
     }
-    settings
+    CoordinateAscentSettings {
+        max_sweeps: settings.max_sweeps.min(POSE_SWEEPS),
+        tolerance: settings.tolerance.max(POSE_TOLERANCE),
+        ..settings
+    }
 }
 
 fn ascent_settings(ascent: &super::settings::CoordinateAscent) -> CoordinateAscentSettings {
@@ -181,6 +186,7 @@ fn genetic_settings(genetic: &super::settings::Genetic) -> GeneticSettings {
 
 fn global_stage(
     optimise: &Optimise,
+    arm: &PlanarStudy,
     seed: u64,
     starts: Vec<Vec<f64>>,
     objective: &dyn Objective,
@@ -193,7 +199,8 @@ fn global_stage(
                 Some(Stage::Ascent(snapshot)) => Some(snapshot),
                 _ => None,
             };
-            let solver = CoordinateAscent::new(ascent_settings(ascent), seed, starts);
+            let settings = within_reason(ascent_settings(ascent), arm);
+            let solver = CoordinateAscent::new(settings, seed, starts);
             let name = "coordinate ascent";
             stage(objective, solver, saved, Stage::Ascent, session, name)
         }

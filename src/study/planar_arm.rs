@@ -77,12 +77,12 @@ impl PlanarStudy {
         }
     }
 
-    /// The score to maximise; `coarse` trades accuracy of pose tasks for time.
-    pub fn objective(&self, space: DesignSpace, normalised: bool, coarse: bool) -> PlanarObjective {
-        let task = match self.pose {
-            None => PlanarTask::Position,
-            Some(_) if coarse => PlanarTask::Pose(PoseResolution::coarse()),
-            Some(resolution) => PlanarTask::Pose(resolution),
+    /// The score to maximise: exact for position tasks, coarse for pose tasks.
+    pub fn objective(&self, space: DesignSpace, normalised: bool) -> PlanarObjective {
+        let task = if self.is_pose() {
+            PlanarTask::Pose(PoseResolution::coarse())
+        } else {
+            PlanarTask::Position
         };
         PlanarObjective::new(space, task, self.failures.clone(), normalised)
     }
