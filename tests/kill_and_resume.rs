@@ -259,3 +259,34 @@ fn foreign_and_damaged_checkpoints_are_refused() {
     fs::write(&checkpoint, &whole).unwrap();
     place.finish("out", "2", &["--resume"]);
 }
+
+/// A finished run is not run again, and never replaced by another study's.
+#[test]
+fn resuming_a_finished_run_gives_its_result() {
+    let place = Place::new(SHORT);
+    let first = place.finish("out", "2", &[]);
+    let written = fs::metadata(place.path("out/result.json"))
+        .unwrap()
+        .modified()
+        .unwrap();
+    assert_eq!(place.finish("out", "2", &["--resume"]), first);
+    let after = fs::metadata(place.path("out/result.json"))
+        .unwrap()
+        .modified()
+        .unwrap();
+    assert_eq!(written, after);
+    for (file, old, new) in [
+        ("study.toml", "seed = 7", "seed = 8"),
+        ("arm.toml", "0.8", "0.7"),
+    ] {
+        place.with_changed(file, old, new, || {
+            let output = place.run("out", "2", &["--resume"]);
+            assert_eq!(output.status.code(), Some(2));
+            let message = String::from_utf8_lossy(&output.stderr).into_owned();
+            assert!(
+                message.contains("finished report of another study"),
+                "{message}"
+            );
+        });
+    }
+}

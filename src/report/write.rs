@@ -99,8 +99,9 @@ pub fn write_report(
     }
     let path = |name: &str| directory.join(name);
     write_text(&path("study.toml"), &report.study_toml)?;
-    write_json(&path("result.json"), &report.result_json)?;
     write_text(&path("report.html"), &page(report, &inline))?;
+    // Last: where it is, the report is whole.
+    write_json(&path("result.json"), &report.result_json)?;
     written.extend(["study.toml", "result.json", "report.html"].map(path));
     Ok(written)
 }

@@ -6,7 +6,7 @@ use super::planar_arm::PlanarStudy;
 use super::result::Finding;
 use super::settings::{FigureFormat, Question, Study};
 use super::{check_folder, picture};
-use crate::diagnostic::InputError;
+use crate::diagnostic::{InputError, Problem};
 use crate::report::{
     self, Convergence, ConvergencePoint, Format, Report, WorkspaceFigure, write_report,
 };
@@ -78,10 +78,15 @@ fn run_in_pool(
 ) -> Result<Value, RunError> {
     let mut store = Store::new(&options.out, study);
     let saved = if options.resume { store.load()? } else { None };
+    let study_toml = study.to_toml(&options.out).map_err(anyhow::Error::from)?;
     if saved.is_none() {
+        if options.resume
+            && let Some(result) = finished(study, options, &study_toml)?
+        {
+            return Ok(result);
+        }
         store.remove();
     }
-    let study_toml = study.to_toml(&options.out).map_err(anyhow::Error::from)?;
     report::write_text(&options.out.join("study.toml"), &study_toml)
         .map_err(anyhow::Error::from)?;
     let arm = PlanarStudy::new(study)?;
@@ -114,6 +119,30 @@ fn run_in_pool(
     let result = outcome.write(options, &session)?;
     session.store.remove();
     Ok(result)
+}
+
+/// The result of a run that needs no resuming, because it has ended.
+fn finished(
+    study: &Study,
+    options: &RunOptions,
+    study_toml: &str,
+) -> Result<Option<Value>, RunError> {
+    let read = |name: &str| std::fs::read_to_string(options.out.join(name)).ok();
+    let Some(text) = read("result.json") else {
+        return Ok(None);
+    };
+    let result: Value = serde_json::from_str(&text).unwrap_or_default();
+    let same_robot = result["provenance"]["design_sha256"] == study.design.sha256.as_str();
+    if !same_robot || read("study.toml").as_deref() != Some(study_toml) {
+        let problem = Problem {
+            message: "the run cannot be resumed".into(),
+            found: "the finished report of another study, robot or seed".into(),
+            expected: "the checkpoint of this study".into(),
+            help: "add `--overwrite` to replace it, or choose another `--out`".into(),
+        };
+        return Err(InputError::in_file(&options.out.display().to_string(), problem).into());
+    }
+    Ok(Some(result))
 }
 
 /// A study whose search, if any, is over.

@@ -4,6 +4,7 @@
 //! that the study as run reads like the study as written; [`DegreeLimits::to_limits`] converts.
 
 use crate::design::{Robot, TaskSpace};
+use crate::optimiser::{CoordinateAscentSettings, GeneticSettings};
 use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use serde::Serialize;
 use std::path::PathBuf;
@@ -214,27 +215,29 @@ impl DegreeLimits {
 
 impl Default for CoordinateAscent {
     fn default() -> CoordinateAscent {
+        let default = CoordinateAscentSettings::default();
         CoordinateAscent {
-            restarts: 32,
-            line_samples: 24,
-            scout_sweeps: 2,
-            finalists: 6,
-            max_sweeps: 100,
-            tolerance: 1e-9,
+            restarts: default.restarts as u64,
+            line_samples: default.line_samples as u64,
+            scout_sweeps: default.scout_sweeps as u64,
+            finalists: default.finalists as u64,
+            max_sweeps: default.max_sweeps as u64,
+            tolerance: default.tolerance,
         }
     }
 }
 
 impl Default for Genetic {
     fn default() -> Genetic {
+        let default = GeneticSettings::default();
         Genetic {
-            population: 100,
-            generations: 200,
-            elite: 2,
-            tournament: 3,
-            crossover_rate: 0.9,
-            mutation_rate: 0.3,
-            patience: 50,
+            population: default.population as u64,
+            generations: default.generations as u64,
+            elite: default.elite as u64,
+            tournament: default.tournament as u64,
+            crossover_rate: default.crossover_rate,
+            mutation_rate: default.mutation_rate,
+            patience: default.patience as u64,
             polish: true,
         }
     }
