@@ -157,11 +157,16 @@ fn curve(
         all[joint] = moved;
         arm.size(&ArtificialLimits::new(all))
     };
-    let values: Vec<(f64, f64)> = at.par_iter().map(|value| (*value, score(value))).collect();
+    // Figures and tables speak of joint variables; a half-width has no zero to shift.
+    let shift = match side {
+        LimitSide::HalfWidth => 0.0,
+        _ => arm.offset(joint),
+    };
+    let values = at.par_iter().map(|value| (value - shift, score(value)));
     SensitivityCurve {
         joint: joint + 1,
         side,
-        values,
-        optimum: (optimum, arm.size(limits)),
+        values: values.collect(),
+        optimum: (optimum - shift, arm.size(limits)),
     }
 }

@@ -46,6 +46,11 @@ impl PlanarStudy {
         &self.failures
     }
 
+    /// What is added to the variable of joint `k` (from 0) to give the angle between its links.
+    pub fn offset(&self, k: usize) -> f64 {
+        self.offsets[k]
+    }
+
     /// Limits between links for limits of joint variables.
     pub fn to_links(&self, limits: &ArtificialLimits) -> ArtificialLimits {
         let pairs = limits.joints().iter().zip(&self.offsets);

@@ -95,22 +95,25 @@ fn run_in_pool(
         progress,
         interrupt: options.interrupt.clone(),
     };
-    let (arm, limits, optimum, radii) = match &study.question {
+    let (arm, limits, joint_limits, optimum, radii) = match &study.question {
         Question::Estimate(estimate) => {
-            let limits = arm.to_links(&estimate.limits.to_limits());
-            (arm, limits, None, estimate.radii.clone())
+            let given = estimate.limits.to_limits();
+            let limits = arm.to_links(&given);
+            (arm, limits, given, None, estimate.radii.clone())
         }
         Question::Optimise(optimise) => {
             let optimum = search(optimise, &arm, study.seed, saved, &session)?;
             let arm = arm.with_lengths(optimum.design.lengths.clone());
             let limits = optimum.design.limits.clone();
-            (arm, limits, Some(optimum), Vec::new())
+            let joint_limits = arm.to_joints(&limits);
+            (arm, limits, joint_limits, Some(optimum), Vec::new())
         }
     };
     let outcome = Outcome {
         study,
         arm,
         limits,
+        joint_limits,
         optimum,
         radii,
         study_toml,
@@ -149,7 +152,10 @@ fn finished(
 struct Outcome<'a> {
     study: &'a Study,
     arm: PlanarStudy,
+    /// Limits between links, as the arm's workspaces have them.
     limits: ArtificialLimits,
+    /// The same limits of the joint variables, as tables have them.
+    joint_limits: ArtificialLimits,
     optimum: Option<Optimum>,
     radii: Vec<f64>,
     study_toml: String,
@@ -226,7 +232,7 @@ impl Outcome<'_> {
             failures: self.arm.failures(),
             sizes,
             unit: study.task.unit().into(),
-            limits: &self.limits,
+            limits: &self.joint_limits,
             links: &self.arm.lengths,
             workspace: Some(WorkspaceFigure {
                 map,
@@ -304,7 +310,7 @@ impl Outcome<'_> {
                 Some(_) => "No limits with a fault-tolerant workspace were found.".into(),
             });
         }
-        for (number, limit) in (1..).zip(self.arm.to_joints(&self.limits).joints()) {
+        for (number, limit) in (1..).zip(self.joint_limits.joints()) {
             // Narrower than a control system resolves.
             if limit.width() < 1e-4 {
                 let angle = limit.centre().to_degrees();
