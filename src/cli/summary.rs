@@ -1,5 +1,6 @@
 //! A few lines about a result, for people.
 
+use crate::report::with_error;
 use serde_json::Value;
 use std::fmt::Write;
 use std::path::Path;
@@ -18,13 +19,18 @@ pub(super) fn summary(result: &Value, out: &Path) -> String {
     );
     let size = &result["size"];
     let unit = size["unit"].as_str().unwrap_or("");
-    for (key, label) in [
-        ("fault_tolerant", "fault-tolerant workspace"),
-        ("unrestricted", "unrestricted workspace"),
-    ] {
-        if let Some(value) = size[key].as_f64() {
-            let _ = writeln!(text, "  {label:<25} {value:.6} {unit}");
-        }
+    if let Some(value) = size["fault_tolerant"].as_f64() {
+        // More than six decimals help nobody on a terminal; result.json has them.
+        let error = size["error"].as_f64().unwrap_or(0.0);
+        let value = if error < 5e-7 {
+            format!("{value:.6}")
+        } else {
+            with_error(value, error)
+        };
+        let _ = writeln!(text, "  {:<25} {value} {unit}", "fault-tolerant workspace");
+    }
+    if let Some(value) = size["unrestricted"].as_f64() {
+        let _ = writeln!(text, "  {:<25} {value:.6} {unit}", "unrestricted workspace");
     }
     if let Some(share) = size["normalised"].as_f64() {
         let _ = writeln!(text, "  {:<25} {:.3} %", "share", 100.0 * share);
