@@ -1,6 +1,6 @@
 //! `report.html`: one page that needs no other file.
 
-use super::number::{degrees, estimate, joint_symbol, percentage, rounded, unit};
+use super::number::{estimate, exact_degrees, joint_symbol, percentage, rounded, unit};
 use super::sizes_figure::named;
 use super::write::Report;
 use crate::workspace::JointLimit;
@@ -109,7 +109,7 @@ fn limits(report: &Report) -> Markup {
         if limit.is_full() {
             "360° (free)".into()
         } else {
-            degrees(limit.width())
+            exact_degrees(limit.width())
         }
     };
     html! {
@@ -118,8 +118,8 @@ fn limits(report: &Report) -> Markup {
             @for (k, limit) in report.limits.joints().iter().enumerate() {
                 tr {
                     td { (k + 1) ", " (joint_symbol(k + 1)) }
-                    td.n { (degrees(limit.lower)) }
-                    td.n { (degrees(limit.upper)) }
+                    td.n { (exact_degrees(limit.lower)) }
+                    td.n { (exact_degrees(limit.upper)) }
                     td.n { (width(limit)) }
                 }
             }

@@ -62,11 +62,21 @@ pub fn plain(value: f64) -> String {
     format!("{mantissa} × 10{}", superscript(power))
 }
 
-/// An angle given in radians, in degrees with one decimal: "−18.0°".
+/// An angle given in radians, in degrees with one decimal: "−18.0°". For figures.
 pub fn degrees(radians: f64) -> String {
+    degrees_to(radians, -1)
+}
+
+/// An angle given in radians, in degrees with four decimals: "−18.2075°". For tables, whose
+/// readers set a controller's limits: a tenth of a degree can cost a percent of the workspace.
+pub fn exact_degrees(radians: f64) -> String {
+    degrees_to(radians, -4)
+}
+
+fn degrees_to(radians: f64, power: i32) -> String {
     let degrees = radians.to_degrees();
     match degrees.abs() {
-        size if size < 1e5 => format!("{}°", rounded(degrees, -1)),
+        size if size < 1e5 => format!("{}°", rounded(degrees, power)),
         size if size.is_finite() => format!("{}°", plain(degrees)),
         _ => "not known".into(),
     }

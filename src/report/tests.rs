@@ -336,7 +336,7 @@ fn the_page_is_one_file_and_escapes_what_it_is_given() {
     assert!(html.contains("alt=\"a &quot;quoted&quot; caption\""));
     assert!(html.contains("(3.562 ± 0.012) m²"));
     assert!(html.contains("12.723 ± 0.050 %"));
-    assert!(html.contains("−18.0°") && html.contains("360° (free)"));
+    assert!(html.contains("−18.0000°") && html.contains("360° (free)"));
     assert!(html.contains("One pose failed."));
     assert!(!html.contains("http"));
 }
