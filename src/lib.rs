@@ -9,6 +9,7 @@ pub mod cli;
 pub mod design;
 pub mod diagnostic;
 pub mod kinematics;
+pub mod manifold;
 pub mod objective;
 pub mod optimiser;
 pub mod report;

@@ -51,6 +51,31 @@ pub fn reach(robot: &Robot) -> f64 {
     joints.iter().enumerate().map(span).sum()
 }
 
+/// The n + 1 constant transforms C around the joints: T(θ) = C₀ M₁ C₁ ⋯ M_n C_n, where M turns
+/// about or slides along its z axis by the joint variable.
+pub fn fixed_transforms(robot: &Robot) -> Vec<Isometry3<f64>> {
+    let mut fixed = vec![Isometry3::identity()];
+    for joint in 0..robot.joints() {
+        let row = row_motion(robot, joint, 0.0);
+        if let Geometry::Rows {
+            convention: Convention::Modified,
+            joints,
+        } = &robot.geometry
+        {
+            let link = joints[joint].link;
+            let about_x = Isometry3::from_parts(
+                Translation3::new(link.length, 0.0, 0.0),
+                UnitQuaternion::from_axis_angle(&Vector3::x_axis(), link.twist),
+            );
+            fixed[joint] *= about_x;
+            fixed.push(about_x.inverse() * row);
+        } else {
+            fixed.push(row);
+        }
+    }
+    fixed
+}
+
 /// The constant part of row `joint` (from 0).
 fn row(robot: &Robot, joint: usize) -> Link {
     match &robot.geometry {

@@ -1,0 +1,177 @@
+//! All self-motion manifolds of one task point, for robots with one degree of redundancy.
+
+use super::curve::{Curve, CurveStatus, distance, wrapped};
+use super::seeds::{Seed, Seeder};
+use super::trace::{TraceSettings, trace};
+use crate::kinematics::{Goal, Kernel, Lanes};
+use rand_chacha::ChaCha8Rng;
+
+/// How long manifolds are looked for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SearchSettings {
+    /// Starts that are always made.
+    pub least_seeds: usize,
+    /// Hits every manifold must have before the search ends: one that was found but once or
+    /// twice suggests that others were missed.
+    pub least_hits: usize,
+    /// Starts after which the search ends in any case.
+    pub most_seeds: usize,
+    /// Starts without any solution after which the task point counts as out of reach.
+    pub unreachable_after: usize,
+    /// How curves are traced.
+    pub trace: TraceSettings,
+}
+
+impl Default for SearchSettings {
+    /// For single task points: misses about one manifold in 10⁴.
+    fn default() -> SearchSettings {
+        SearchSettings {
+            least_seeds: 64,
+            least_hits: 5,
+            most_seeds: 1000,
+            unreachable_after: 100,
+            trace: TraceSettings::default(),
+        }
+    }
+}
+
+impl SearchSettings {
+    /// For many task points at once: about 99.7 % of them complete.
+    pub fn coarse() -> SearchSettings {
+        SearchSettings {
+            least_seeds: 24,
+            least_hits: 3,
+            most_seeds: 300,
+            unreachable_after: 32,
+            trace: TraceSettings::coarse(),
+        }
+    }
+}
+
+/// Distance within which a solution lies on a known curve, internal radians.
+const ON_CURVE: f64 = 2e-3;
+
+/// The search for one task point, with the storage it needs; reuse it for the next point.
+#[derive(Clone, Debug)]
+pub(crate) struct Solver<const N: usize, const M: usize> {
+    pub kernel: Kernel<N, M>,
+    /// The curves found; only the first `found` are of this task point.
+    curves: Vec<Curve<N>>,
+    hits: Vec<usize>,
+    found: usize,
+    /// Starts made.
+    pub seeds: usize,
+    /// Starts that found the task.
+    pub landed: usize,
+}
+
+impl<const N: usize, const M: usize> Solver<N, M> {
+    pub fn new(kernel: Kernel<N, M>) -> Solver<N, M> {
+        Solver {
+            kernel,
+            curves: Vec::new(),
+            hits: Vec::new(),
+            found: 0,
+            seeds: 0,
+            landed: 0,
+        }
+    }
+
+    /// The curves of the last task point.
+    pub fn curves(&self) -> &[Curve<N>] {
+        &self.curves[..self.found]
+    }
+
+    /// How often random starts landed on each curve.
+    pub fn hits(&self) -> &[usize] {
+        &self.hits[..self.found]
+    }
+
+    /// Finds all curves of `goal`.
+    pub fn solve(&mut self, goal: &Goal<f64>, settings: &SearchSettings, rng: &mut ChaCha8Rng) {
+        self.found = 0;
+        self.landed = 0;
+        self.seeds = 0;
+        let lanes: Goal<Lanes> = goal.splat();
+        let mut seeder = Seeder::new(rng);
+        let mut landed: Vec<[f64; N]> = Vec::with_capacity(8);
+        while !self.is_done(settings) {
+            landed.clear();
+            let kernel = self.kernel.clone();
+            seeder.next(&kernel, &lanes, rng, |seed| {
+                if let Seed::Found(point) = seed {
+                    landed.push(point);
+                }
+            });
+            self.seeds = seeder.tried;
+            for point in &landed {
+                self.landed += 1;
+                self.assign(goal, point, settings);
+            }
+        }
+    }
+
+    fn is_done(&self, settings: &SearchSettings) -> bool {
+        if self.seeds >= settings.most_seeds {
+            return true;
+        }
+        if self.landed == 0 {
+            return self.seeds >= settings.unreachable_after;
+        }
+        self.seeds >= settings.least_seeds
+            && self.hits().iter().all(|&hits| hits >= settings.least_hits)
+            && self.winding_sum().iter().all(|&sum| sum == 0)
+    }
+
+    /// Sum of the winding vectors of all closed curves, which run along the cofactor field.
+    pub fn winding_sum(&self) -> [i32; N] {
+        let mut sum = [0; N];
+        for curve in self.curves() {
+            for k in 0..N {
+                sum[k] += curve.winding[k];
+            }
+        }
+        sum
+    }
+
+    /// Counts `point` for the curve it lies on, or traces its own.
+    fn assign(&mut self, goal: &Goal<f64>, point: &[f64; N], settings: &SearchSettings) {
+        let known = self
+            .curves()
+            .iter()
+            .position(|curve| curve.locate(point, ON_CURVE).is_some());
+        if let Some(index) = known {
+            self.hits[index] += 1;
+            return;
+        }
+        if self.curves.len() == self.found {
+            self.curves.push(Curve::new());
+            self.hits.push(0);
+        }
+        let start = wrapped(point);
+        let (old, new) = self.curves.split_at_mut(self.found);
+        let curve = &mut new[0];
+        trace(&self.kernel, goal, &start, &settings.trace, curve);
+        // A point may miss its own curve between two long steps.
+        match old.iter().position(|old| is_same(old, curve)) {
+            Some(index) => self.hits[index] += 1,
+            None => {
+                self.hits[self.found] = 1;
+                self.found += 1;
+            }
+        }
+    }
+}
+
+/// Whether two traces follow the same curve.
+fn is_same<const N: usize>(old: &Curve<N>, new: &Curve<N>) -> bool {
+    let start = &old.points[old.points.len() / 2];
+    if old.status != new.status || (old.length - new.length).abs() > 0.01 * old.length {
+        return false;
+    }
+    if old.status == CurveStatus::Closed {
+        return new.locate(start, 2.0 * ON_CURVE).is_some();
+    }
+    new.locate(start, 2.0 * ON_CURVE).is_some()
+        || distance(start, &new.points[new.points.len() / 2]) < ON_CURVE
+}
