@@ -84,10 +84,9 @@ impl JointScale {
 pub fn joint_scales(robot: &Robot) -> Option<Vec<JointScale>> {
     let scale = |joint: usize| match (robot.joint_kind(joint), &robot.physical_limits) {
         (JointKind::Revolute, _) => Some(JointScale::REVOLUTE),
-        (JointKind::Prismatic, Some(limits)) => Some(JointScale::stroke(
-            limits.lower[joint],
-            limits.upper[joint],
-        )),
+        (JointKind::Prismatic, Some(limits)) => {
+            Some(JointScale::stroke(limits.lower[joint], limits.upper[joint]))
+        }
         (JointKind::Prismatic, None) => None,
     };
     (0..robot.joints()).map(scale).collect()
@@ -171,7 +170,10 @@ impl Chain {
         before.twist = twist;
         match chain.joints.get_mut(joint) {
             Some(next) => next.offset += after,
-            None => chain.end = Isometry3::from_parts(Translation3::identity(), about_z(after).into()) * chain.end,
+            None => {
+                chain.end = Isometry3::from_parts(Translation3::identity(), about_z(after).into())
+                    * chain.end
+            }
         }
         chain
     }
@@ -187,12 +189,15 @@ impl Chain {
 
     /// A typical link length, metres, above 0: the mean over the links that have one.
     pub fn mean_link(&self) -> f64 {
-        let lengths = self.joints.iter().map(|joint| {
-            Vector3::from(joint.arm).norm() + 0.5 * PI * joint.slide
-        });
+        let lengths = self
+            .joints
+            .iter()
+            .map(|joint| Vector3::from(joint.arm).norm() + 0.5 * PI * joint.slide);
         let (sum, count) = lengths
             .filter(|length| *length > 0.0)
-            .fold((0.0, 0.0), |(sum, count), length| (sum + length, count + 1.0));
+            .fold((0.0, 0.0), |(sum, count), length| {
+                (sum + length, count + 1.0)
+            });
         if count > 0.0 { sum / count } else { 1.0 }
     }
 }

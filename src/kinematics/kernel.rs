@@ -75,6 +75,7 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
         let mut axes = [[zero; 3]; N];
         let mut origins = [[zero; 3]; N];
         for (k, joint) in self.joints.iter().enumerate() {
+            T::keep_loop();
             axes[k] = z;
             origins[k] = p;
             let angle = theta[k] * T::constant(joint.turn) + T::constant(joint.offset);
@@ -83,6 +84,7 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
             let d = d + theta[k] * T::constant(joint.slide);
             let [cos, sin] = joint.twist.map(T::constant);
             for i in 0..3 {
+                T::keep_loop();
                 let turned = c * x[i] + s * y[i];
                 let across = c * y[i] - s * x[i];
                 x[i] = turned;
@@ -117,6 +119,7 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
             out.residual[i] = (p[i] - goal.position[i]) * unit;
         }
         for (k, joint) in self.joints.iter().enumerate() {
+            T::keep_loop();
             let (turn, slide) = (T::constant(joint.turn), T::constant(joint.slide));
             let z = axes[k];
             let lever = [0, 1, 2].map(|i| p[i] - origins[k][i]);

@@ -27,6 +27,9 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// The smaller value, lane by lane.
     fn min(self, other: Self) -> Self;
+    /// Call it first in every loop over coordinates: keeps the compiler from turning that loop,
+    /// rather than the lanes, into vectors, which costs a factor of three. Does nothing else.
+    fn keep_loop();
 }
 
 impl Real for f64 {
@@ -50,6 +53,8 @@ impl Real for f64 {
     fn min(self, other: f64) -> f64 {
         if self < other { self } else { other }
     }
+    #[inline(always)]
+    fn keep_loop() {}
 }
 
 /// Number of lanes of [`Lanes`].
@@ -132,5 +137,10 @@ impl Real for Lanes {
             result.0[lane] = Real::min(self.0[lane], other.0[lane]);
         }
         result
+    }
+    #[inline(always)]
+    fn keep_loop() {
+        // SAFETY: no instruction at all. Loops that contain inline assembly are not vectorised.
+        unsafe { std::arch::asm!("", options(nomem, nostack, preserves_flags)) }
     }
 }

@@ -23,7 +23,7 @@ pub struct NewtonStep<const N: usize> {
 /// The sign of the tangent is intrinsic, i.e. a property of the configuration alone: two strands
 /// of a manifold that run past each other are oriented oppositely, so that a jump from one to the
 /// other shows. `None` where the Jacobian has lost rank to working precision.
-#[inline]
+#[inline(always)]
 pub fn newton_step<const N: usize, const M: usize>(
     linear: &Linearisation<f64, N, M>,
 ) -> Option<NewtonStep<N>> {
@@ -100,12 +100,16 @@ pub fn damped_step<T: Real, const N: usize, const M: usize>(
     let mut l = [[zero; M]; M];
     let mut inverse = [zero; M];
     for i in 0..M {
+        T::keep_loop();
         for k in 0..=i {
+            T::keep_loop();
             let mut sum = if i == k { lambda } else { zero };
             for c in 0..N {
+                T::keep_loop();
                 sum = sum + j[i][c] * j[k][c];
             }
             for c in 0..k {
+                T::keep_loop();
                 sum = sum - l[i][c] * l[k][c];
             }
             if i == k {
@@ -117,22 +121,28 @@ pub fn damped_step<T: Real, const N: usize, const M: usize>(
     }
     let mut w = [zero; M];
     for i in 0..M {
+        T::keep_loop();
         let mut sum = zero - linear.residual[i];
         for c in 0..i {
+            T::keep_loop();
             sum = sum - l[i][c] * w[c];
         }
         w[i] = sum * inverse[i];
     }
     for i in (0..M).rev() {
+        T::keep_loop();
         let mut sum = w[i];
         for c in i + 1..M {
+            T::keep_loop();
             sum = sum - l[c][i] * w[c];
         }
         w[i] = sum * inverse[i];
     }
     let mut step = [zero; N];
     for c in 0..N {
+        T::keep_loop();
         for i in 0..M {
+            T::keep_loop();
             step[c] = step[c] + j[i][c] * w[i];
         }
     }

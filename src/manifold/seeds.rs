@@ -115,7 +115,10 @@ impl<const N: usize> Seeder<N> {
 }
 
 /// One damped step of every lane; returns the squared residuals before it.
-#[multiversion(targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"), dispatcher = "direct")]
+#[multiversion(
+    targets("x86_64+avx512f+avx512vl+avx512dq", "x86_64+avx2"),
+    dispatcher = "direct"
+)]
 fn iterate<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<Lanes>,
@@ -124,6 +127,7 @@ fn iterate<const N: usize, const M: usize>(
     let linear = kernel.linearise(theta, goal);
     let mut square = Lanes::constant(0.0);
     for residual in linear.residual {
+        Lanes::keep_loop();
         square = square + residual * residual;
     }
     let mut lambda = square;
@@ -137,9 +141,8 @@ fn iterate<const N: usize, const M: usize>(
     }
     let step = damped_step(&linear, lambda);
     for k in 0..N {
-        let bounded = step[k]
-            .max(Lanes::constant(-1.0))
-            .min(Lanes::constant(1.0));
+        Lanes::keep_loop();
+        let bounded = step[k].max(Lanes::constant(-1.0)).min(Lanes::constant(1.0));
         theta[k] = theta[k] + bounded;
     }
     square

@@ -14,12 +14,7 @@ pub(crate) struct Segment<const N: usize> {
 }
 
 impl<const N: usize> Segment<N> {
-    pub fn new(
-        start: &[f64; N],
-        end: &[f64; N],
-        first: &[f64; N],
-        last: &[f64; N],
-    ) -> Segment<N> {
+    pub fn new(start: &[f64; N], end: &[f64; N], first: &[f64; N], last: &[f64; N]) -> Segment<N> {
         let chord: [f64; N] = std::array::from_fn(|k| end[k] - start[k]);
         let turn: [f64; N] = std::array::from_fn(|k| last[k] - first[k]);
         // A circular arc is longer than its chord by the factor 1 + turn²/24 + O(turn⁴).
@@ -47,7 +42,8 @@ impl<const N: usize> Segment<N> {
     pub fn slope(&self, k: usize, u: f64) -> f64 {
         let v = 1.0 - u;
         6.0 * u * v * self.chord[k]
-            + self.length * (v * (1.0 - 3.0 * u) * self.first[k] - u * (2.0 - 3.0 * u) * self.last[k])
+            + self.length
+                * (v * (1.0 - 3.0 * u) * self.first[k] - u * (2.0 - 3.0 * u) * self.last[k])
     }
 
     pub fn at(&self, u: f64) -> [f64; N] {
@@ -56,7 +52,11 @@ impl<const N: usize> Segment<N> {
 
     /// Parameters inside (0, 1) at which coordinate `k` has an extremum, in order.
     pub fn extrema(&self, k: usize) -> [Option<f64>; 2] {
-        let (f, l, c) = (self.length * self.first[k], self.length * self.last[k], self.chord[k]);
+        let (f, l, c) = (
+            self.length * self.first[k],
+            self.length * self.last[k],
+            self.chord[k],
+        );
         // The slope is f + 2 b u + a u².
         let a = 3.0 * (f + l - 2.0 * c);
         let b = 3.0 * c - 2.0 * f - l;

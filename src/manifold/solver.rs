@@ -97,8 +97,7 @@ impl<const N: usize, const M: usize> Solver<N, M> {
         let mut landed: Vec<[f64; N]> = Vec::with_capacity(8);
         while !self.is_done(settings) {
             landed.clear();
-            let kernel = self.kernel.clone();
-            seeder.next(&kernel, &lanes, rng, |seed| {
+            seeder.next(&self.kernel, &lanes, rng, |seed| {
                 if let Seed::Found(point) = seed {
                     landed.push(point);
                 }
@@ -132,6 +131,17 @@ impl<const N: usize, const M: usize> Solver<N, M> {
             }
         }
         sum
+    }
+
+    /// Whether every curve closed (or ends at a stroke) and the winding vectors sum to zero.
+    pub fn is_sound(&self) -> bool {
+        let closed = |curve: &Curve<N>| curve.status == CurveStatus::Closed;
+        let stroke = |curve: &Curve<N>| curve.status == CurveStatus::Stroke;
+        let curves = self.curves();
+        curves.iter().all(|curve| closed(curve) || stroke(curve))
+            && (curves.iter().any(stroke)
+                || curves.iter().any(|curve| !curve.crossings.is_empty())
+                || self.winding_sum() == [0; N])
     }
 
     /// Counts `point` for the curve it lies on, or traces its own.

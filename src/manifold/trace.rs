@@ -151,7 +151,7 @@ fn march<const N: usize, const M: usize>(
     settings: &TraceSettings,
     curve: &mut Curve<N>,
 ) -> Ending {
-    let Some(first) = newton_step(&kernel.linearise(start, goal)) else {
+    let Some(first) = probe(kernel, start, goal) else {
         curve.push(*start, [0.0; N]);
         return Ending::Singular;
     };
@@ -213,9 +213,8 @@ fn closure<const N: usize>(curve: &Curve<N>) -> Option<[f64; N]> {
     let lifted: [f64; N] = std::array::from_fn(|k| to[k] + short_way(start[k] - to[k]));
     let segment = Segment::new(from, to, &curve.tangents[last - 1], &curve.tangents[last]);
     let (_, miss) = segment.project(&lifted)?;
-    (miss < 2e-3 + 0.005 * chord.sqrt()).then(|| {
-        std::array::from_fn(|k| start[k] + ((lifted[k] - start[k]) / TAU).round() * TAU)
-    })
+    (miss < 2e-3 + 0.005 * chord.sqrt())
+        .then(|| std::array::from_fn(|k| start[k] + ((lifted[k] - start[k]) / TAU).round() * TAU))
 }
 
 impl<const N: usize, const M: usize> March<'_, N, M> {
@@ -223,8 +222,8 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
     fn advance(&mut self) -> bool {
         let h = self.step;
         let guess = self.predict(h);
-        let accepted = newton_step(&self.kernel.linearise(&guess, self.goal))
-            .and_then(|newton| self.judge(h, &guess, &newton));
+        let accepted =
+            probe(self.kernel, &guess, self.goal).and_then(|newton| self.judge(h, &guess, &newton));
         let Some((point, tangent, correction)) = accepted else {
             self.step = 0.5 * h;
             return false;
@@ -294,8 +293,7 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
     /// direction closest to the incoming one.
     fn cross_singularity(&mut self) -> bool {
         for h in [1e-4, 1e-3, 1e-2, 3e-2] {
-            let guess: [f64; N] =
-                std::array::from_fn(|k| self.point[k] + h * self.tangents[0][k]);
+            let guess: [f64; N] = std::array::from_fn(|k| self.point[k] + h * self.tangents[0][k]);
             let Some((point, newton)) = correct(self.kernel, self.goal, &guess) else {
                 continue;
             };
@@ -335,7 +333,7 @@ fn correct<const N: usize, const M: usize>(
 ) -> Option<([f64; N], NewtonStep<N>)> {
     let mut point = *guess;
     for _ in 0..12 {
-        let newton = newton_step(&kernel.linearise(&point, goal))?;
+        let newton = probe(kernel, &point, goal)?;
         let size = dot(&newton.correction, &newton.correction).sqrt();
         // NaN and runaway corrections alike.
         if !(size < 0.1) {
@@ -359,7 +357,7 @@ fn polish<const N: usize, const M: usize>(
 ) {
     for index in 0..curve.points.len() {
         let point = curve.points[index];
-        let Some(newton) = newton_step(&kernel.linearise(&point, goal)) else {
+        let Some(newton) = probe(kernel, &point, goal) else {
             continue;
         };
         let size = dot(&newton.correction, &newton.correction);
@@ -379,4 +377,14 @@ fn polish<const N: usize, const M: usize>(
             std::array::from_fn(|k| first[k] + ((end[k] - first[k]) / TAU).round() * TAU);
         curve.tangents[last] = curve.tangents[0];
     }
+}
+
+/// Linearisation and Newton step in one.
+#[inline]
+fn probe<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    point: &[f64; N],
+    goal: &Goal<f64>,
+) -> Option<NewtonStep<N>> {
+    newton_step(&kernel.linearise(point, goal))
 }

@@ -1,0 +1,75 @@
+//! Chooses the kernel of the right size, once.
+//!
+//! With one degree of redundancy the task's dimension fixes the number of joints, so three sizes
+//! serve every robot; more redundant robots are cut into slices of these sizes.
+
+use super::curve::Curve;
+use super::self_motion::SelfMotionManifold;
+use super::solver::{SearchSettings, Solver};
+use crate::design::TaskSpace;
+use crate::kinematics::{Chain, Goal, Kernel};
+use rand_chacha::ChaCha8Rng;
+
+/// A solver for m = 2, 3 or 6 and n = m + 1.
+#[derive(Clone, Debug)]
+pub(crate) enum AnySolver {
+    Two(Box<Solver<3, 2>>),
+    Three(Box<Solver<4, 3>>),
+    Six(Box<Solver<7, 6>>),
+}
+
+macro_rules! each {
+    ($any:expr, $solver:ident => $body:expr) => {
+        match $any {
+            AnySolver::Two($solver) => $body,
+            AnySolver::Three($solver) => $body,
+            AnySolver::Six($solver) => $body,
+        }
+    };
+}
+
+/// Receives the curves of a task point.
+pub(crate) trait CurveVisitor {
+    fn visit<const N: usize>(&mut self, curve: &Curve<N>);
+}
+
+impl AnySolver {
+    /// `None` unless the chain has one joint more than the task has dimensions.
+    pub fn new(chain: &Chain, task: TaskSpace) -> Option<AnySolver> {
+        Some(match task.dimension() {
+            2 => AnySolver::Two(Box::new(Solver::new(Kernel::new(chain, task)?))),
+            3 => AnySolver::Three(Box::new(Solver::new(Kernel::new(chain, task)?))),
+            _ => AnySolver::Six(Box::new(Solver::new(Kernel::new(chain, task)?))),
+        })
+    }
+
+    pub fn solve(&mut self, goal: &Goal<f64>, settings: &SearchSettings, rng: &mut ChaCha8Rng) {
+        each!(self, solver => solver.solve(goal, settings, rng));
+    }
+
+    /// Starts made, and starts that landed.
+    pub fn effort(&self) -> (usize, usize) {
+        each!(self, solver => (solver.seeds, solver.landed))
+    }
+
+    /// Whether every check of the last task point's curves passed.
+    pub fn is_sound(&self) -> bool {
+        each!(self, solver => solver.is_sound())
+    }
+
+    /// Number of curves of the last task point.
+    pub fn count(&self) -> usize {
+        each!(self, solver => solver.curves().len())
+    }
+
+    pub fn visit(&self, visitor: &mut impl CurveVisitor) {
+        each!(self, solver => solver.curves().iter().for_each(|curve| visitor.visit(curve)));
+    }
+
+    pub fn manifolds(&self) -> Vec<SelfMotionManifold> {
+        each!(self, solver => {
+            let pairs = solver.curves().iter().zip(solver.hits());
+            pairs.map(|(curve, &hits)| SelfMotionManifold::from_curve(curve, hits)).collect()
+        })
+    }
+}

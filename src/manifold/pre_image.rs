@@ -1,0 +1,164 @@
+//! The pre-image of a task point with the evidence that nothing of it is missing.
+
+use super::any_solver::AnySolver;
+use super::self_motion::{SelfMotionManifold, joint_ranges};
+use super::{CurveStatus, SearchSettings};
+use crate::angle::AngleSet;
+use crate::design::{Robot, TaskSpace};
+use crate::kinematics::{Chain, Goal, reach};
+use nalgebra::Isometry3;
+use rand_chacha::ChaCha8Rng;
+use serde::{Deserialize, Serialize};
+
+/// How sure it is that a pre-image holds every manifold.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Completeness {
+    /// Nothing is missing.
+    Proved,
+    /// Every check passed: winding vectors sum to zero, every curve is closed. The number
+    /// estimates the probability that one more random start lands on an unknown manifold, from
+    /// how often the known ones were hit: (1 + manifolds hit once) / (2 + hits).
+    Evidence(f64),
+    /// A check failed: winding vectors do not sum to zero, or a curve did not close.
+    Unknown,
+}
+
+/// All configurations with which the robot holds a task point.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PreImage {
+    /// Number of joints n.
+    pub joints: usize,
+    /// Its connected components.
+    pub manifolds: Vec<SelfMotionManifold>,
+    /// How sure it is that there are no others.
+    pub completeness: Completeness,
+    /// Random starts made.
+    pub seeds: usize,
+    /// Starts that solved the task.
+    pub landed: usize,
+}
+
+/// Why a robot and task have no self-motion manifolds that this module can trace.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ManifoldError {
+    /// n − m is not what is asked for.
+    #[error(
+        "{joints} joints for {dimension} task dimensions: a degree of redundancy of {degree}, where {wanted} is needed"
+    )]
+    Redundancy {
+        /// Joints n.
+        joints: usize,
+        /// Task dimension m.
+        dimension: usize,
+        /// n − m.
+        degree: isize,
+        /// What is needed.
+        wanted: &'static str,
+    },
+    /// A prismatic joint has no physical limits.
+    #[error("a prismatic joint without physical limits: its self-motion would have no end")]
+    Unlimited,
+}
+
+/// Finds pre-images of one robot and task with one degree of redundancy.
+#[derive(Clone, Debug)]
+pub struct PreImageSearch {
+    chain: Chain,
+    solver: AnySolver,
+    reach: f64,
+    settings: SearchSettings,
+}
+
+impl PreImageSearch {
+    /// A search for `robot`, which must have one joint more than `task` has dimensions.
+    ///
+    /// # Errors
+    /// Another degree of redundancy, or a prismatic joint without limits.
+    pub fn new(
+        robot: &Robot,
+        task: TaskSpace,
+        settings: SearchSettings,
+    ) -> Result<PreImageSearch, ManifoldError> {
+        let chain = Chain::new(robot).ok_or(ManifoldError::Unlimited)?;
+        let solver = AnySolver::new(&chain, task).ok_or_else(|| ManifoldError::Redundancy {
+            joints: robot.joints(),
+            dimension: task.dimension(),
+            degree: robot.degree_of_redundancy(task),
+            wanted: "1",
+        })?;
+        Ok(PreImageSearch {
+            chain,
+            solver,
+            reach: reach(robot),
+            settings,
+        })
+    }
+
+    /// The chain whose internal joint variables the manifolds have.
+    pub fn chain(&self) -> &Chain {
+        &self.chain
+    }
+
+    /// The pre-image of the tool pose `tool` (world frame; planar tasks use x, y and the angle
+    /// about z, position tasks no rotation).
+    pub fn find(&mut self, tool: &Isometry3<f64>, rng: &mut ChaCha8Rng) -> PreImage {
+        let goal = Goal::new(&self.chain, tool);
+        // The tool cannot be farther from the base than all links together.
+        let out_of_reach = tool.translation.vector.norm() > self.reach * (1.0 + 1e-9);
+        if out_of_reach {
+            return PreImage {
+                joints: self.chain.len(),
+                manifolds: Vec::new(),
+                completeness: Completeness::Proved,
+                seeds: 0,
+                landed: 0,
+            };
+        }
+        self.solver.solve(&goal, &self.settings, rng);
+        let manifolds = self.solver.manifolds();
+        let (seeds, landed) = self.solver.effort();
+        PreImage {
+            joints: self.chain.len(),
+            completeness: judge(&manifolds, seeds, landed),
+            manifolds,
+            seeds,
+            landed,
+        }
+    }
+}
+
+fn judge(manifolds: &[SelfMotionManifold], seeds: usize, landed: usize) -> Completeness {
+    let open =
+        |m: &SelfMotionManifold| !matches!(m.status, CurveStatus::Closed | CurveStatus::Stroke);
+    if manifolds.iter().any(open) {
+        return Completeness::Unknown;
+    }
+    let all_closed = manifolds.iter().all(|m| m.status == CurveStatus::Closed);
+    let orientable = manifolds.iter().all(|m| m.crossings.is_empty());
+    if all_closed && orientable && !winding_sum(manifolds).iter().all(|&sum| sum == 0) {
+        return Completeness::Unknown;
+    }
+    let once = manifolds.iter().filter(|m| m.hits == 1).count();
+    let tries = if manifolds.is_empty() { seeds } else { landed };
+    Completeness::Evidence((1 + once) as f64 / (2 + tries) as f64)
+}
+
+fn winding_sum(manifolds: &[SelfMotionManifold]) -> Vec<i32> {
+    let joints = manifolds.first().map_or(0, |m| m.joints);
+    let sum = |joint: usize| manifolds.iter().map(|m| m.winding[joint]).sum();
+    (0..joints).map(sum).collect()
+}
+
+impl PreImage {
+    /// Θ: per joint the angles it takes over all manifolds.
+    pub fn joint_ranges(&self) -> Vec<AngleSet> {
+        joint_ranges(self.joints, &self.manifolds)
+    }
+
+    /// Sum of the winding vectors over all manifolds: zeros, or something is missing (for robots
+    /// of revolute joints at task points that are no singular values).
+    pub fn winding_sum(&self) -> Vec<i32> {
+        winding_sum(&self.manifolds)
+    }
+}
