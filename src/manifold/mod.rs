@@ -13,10 +13,12 @@ mod seeds;
 mod segment;
 mod self_motion;
 mod solver;
+mod source;
 mod trace;
 
 pub use curve::CurveStatus;
 pub use pre_image::{Completeness, ManifoldError, PreImage, PreImageSearch};
 pub use self_motion::{CriticalPoint, SelfMotionManifold};
 pub use solver::SearchSettings;
+pub use source::{CurveRef, CurveSource};
 pub use trace::TraceSettings;

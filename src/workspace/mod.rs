@@ -1,5 +1,6 @@
 //! Workspaces before and after a failure: W₀, W_i, W_F, and their sizes with error bars.
 
+pub mod hybrid;
 mod limits;
 mod map;
 pub mod planar;

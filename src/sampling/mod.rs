@@ -1,7 +1,13 @@
-//! One random stream per work item.
+//! Random streams, one per work item, low-discrepancy points and uniform rotations.
 //!
 //! A result may depend on the study's seed and on which item is computed, never on the thread
 //! that computes it or on what was computed before.
+
+mod lattice;
+mod rotation;
+
+pub use lattice::Lattice;
+pub use rotation::rotation;
 
 use rand::SeedableRng;
 use rand_chacha::ChaCha8Rng;

@@ -1,0 +1,175 @@
+//! A stream of pre-images for many task points: curves are shown, not kept.
+
+use super::any_solver::{AnySolver, CurveVisitor};
+use super::curve::{Curve, CurveStatus};
+use super::pre_image::ManifoldError;
+use super::segment::Segment;
+use super::solver::SearchSettings;
+use crate::angle::Arc;
+use crate::design::{Robot, TaskSpace};
+use crate::kinematics::{Chain, Goal};
+use nalgebra::Isometry3;
+use rand_chacha::ChaCha8Rng;
+use std::f64::consts::TAU;
+
+/// A traced curve with all joints of the robot, in internal joint variables.
+#[derive(Clone, Copy, Debug)]
+pub struct CurveRef<'a> {
+    /// Number of joints n.
+    pub joints: usize,
+    points: &'a [f64],
+    tangents: &'a [f64],
+    /// How tracing ended.
+    pub status: CurveStatus,
+    winding: &'a [i32],
+}
+
+impl<'a> CurveRef<'a> {
+    /// The number of vertices, at least 1.
+    pub fn vertices(&self) -> usize {
+        self.points.len() / self.joints
+    }
+
+    /// Vertex `index`, unwrapped along the curve.
+    pub fn point(&self, index: usize) -> &'a [f64] {
+        &self.points[index * self.joints..][..self.joints]
+    }
+
+    fn tangent(&self, index: usize) -> &'a [f64] {
+        &self.tangents[index * self.joints..][..self.joints]
+    }
+
+    /// Arc length of segment `index` and the angle by which its tangent turns.
+    pub fn bend(&self, index: usize) -> (f64, f64) {
+        let square =
+            |a: &[f64], b: &[f64]| -> f64 { a.iter().zip(b).map(|(x, y)| (x - y) * (x - y)).sum() };
+        let chord = square(self.point(index), self.point(index + 1));
+        let turn = square(self.tangent(index), self.tangent(index + 1));
+        (chord.sqrt() * (1.0 + turn / 24.0), turn.sqrt())
+    }
+
+    fn coordinate(&self, index: usize, joint: usize, length: f64) -> Segment<1> {
+        let (a, b) = (self.point(index)[joint], self.point(index + 1)[joint]);
+        Segment {
+            start: [a],
+            chord: [b - a],
+            first: [self.tangent(index)[joint]],
+            last: [self.tangent(index + 1)[joint]],
+            length,
+        }
+    }
+
+    /// Hands the configuration at parameter `u` of segment `index` to `take`.
+    pub fn at(&self, index: usize, u: f64, take: impl FnOnce(&[f64])) {
+        let (length, _) = self.bend(index);
+        let mut point = smallvec::SmallVec::<[f64; 8]>::new();
+        for joint in 0..self.joints {
+            point.push(self.coordinate(index, joint, length).coordinate(0, u));
+        }
+        take(&point);
+    }
+
+    /// The angles that `joint` (from 0) takes along the curve.
+    pub fn range(&self, joint: usize) -> Arc {
+        if self.winding[joint] != 0 {
+            return Arc::FULL;
+        }
+        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
+        let mut widen = |value: f64| {
+            low = low.min(value);
+            high = high.max(value);
+        };
+        for index in 0..self.vertices() {
+            widen(self.point(index)[joint]);
+            let inner = index + 1 < self.vertices()
+                && self.tangent(index)[joint] * self.tangent(index + 1)[joint] <= 0.0;
+            if inner {
+                let segment = self.coordinate(index, joint, self.bend(index).0);
+                for u in segment.extrema(0).into_iter().flatten() {
+                    widen(segment.coordinate(0, u));
+                }
+            }
+        }
+        if high - low >= TAU {
+            Arc::FULL
+        } else {
+            Arc::from_interval(low, high)
+        }
+    }
+}
+
+/// Finds the curves of one task point after the other, for one degree of redundancy.
+#[derive(Clone, Debug)]
+pub struct CurveSource {
+    chain: Chain,
+    solver: AnySolver,
+    settings: SearchSettings,
+}
+
+impl CurveSource {
+    /// Curves of `robot` for `task`, in the frame of joint 1 (see
+    /// [`crate::kinematics::Chain::base`]).
+    ///
+    /// # Errors
+    /// Another degree of redundancy than 1, or a prismatic joint without limits.
+    pub fn new(
+        robot: &Robot,
+        task: TaskSpace,
+        settings: SearchSettings,
+    ) -> Result<CurveSource, ManifoldError> {
+        let mut chain = Chain::new(robot).ok_or(ManifoldError::Unlimited)?;
+        chain.base = Isometry3::identity();
+        let solver = AnySolver::new(&chain, task).ok_or_else(|| ManifoldError::Redundancy {
+            joints: robot.joints(),
+            dimension: task.dimension(),
+            degree: robot.degree_of_redundancy(task),
+            wanted: "1",
+        })?;
+        Ok(CurveSource {
+            chain,
+            solver,
+            settings,
+        })
+    }
+
+    /// Number of joints n.
+    pub fn joints(&self) -> usize {
+        self.chain.len()
+    }
+
+    /// Finds the curves of the tool pose `tool`, given in the frame of joint 1.
+    pub fn solve(&mut self, tool: &Isometry3<f64>, rng: &mut ChaCha8Rng) {
+        let goal = Goal::new(&self.chain, tool);
+        self.solver.solve(&goal, &self.settings, rng);
+    }
+
+    /// Random starts made for the last task point.
+    pub fn seeds(&self) -> usize {
+        self.solver.effort().0
+    }
+
+    /// Whether every check of the last task point passed: all curves closed and the winding
+    /// vectors sum to zero.
+    pub fn is_sound(&self) -> bool {
+        self.solver.is_sound()
+    }
+
+    /// Shows every curve of the last task point.
+    pub fn visit(&self, show: impl FnMut(CurveRef<'_>)) {
+        self.solver.visit(&mut Show(show));
+    }
+}
+
+struct Show<F>(F);
+
+impl<F: FnMut(CurveRef<'_>)> CurveVisitor for Show<F> {
+    fn visit<const N: usize>(&mut self, curve: &Curve<N>) {
+        (self.0)(CurveRef {
+            joints: N,
+            points: curve.points.as_flattened(),
+            tangents: curve.tangents.as_flattened(),
+            status: curve.status,
+            winding: &curve.winding,
+        });
+    }
+}

@@ -1,0 +1,173 @@
+//! The parts of a polyline inside a box of joint limits.
+
+use super::turn16::Arc16;
+use smallvec::{SmallVec, smallvec};
+
+/// Joints that a box restricts, with their arcs; joints with the full circle are left out.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Box16 {
+    pub active: SmallVec<[(usize, Arc16); 8]>,
+}
+
+/// Parameters [from, to] of an edge that lie inside the box, in order.
+pub(super) type Inside = SmallVec<[[f32; 2]; 2]>;
+
+impl Box16 {
+    /// The box of the given arcs, `(joint, arc)` with joints counted from 0.
+    pub fn new(arcs: impl IntoIterator<Item = (usize, Arc16)>) -> Box16 {
+        Box16 {
+            active: arcs.into_iter().filter(|(_, arc)| !arc.is_full()).collect(),
+        }
+    }
+
+    #[inline]
+    fn holds(&self, vertex: &[u16]) -> bool {
+        self.active
+            .iter()
+            .all(|&(joint, arc)| arc.contains(vertex[joint]))
+    }
+
+    /// The part of the straight edge from `from` to `to` (each joint goes the short way) inside
+    /// the box. Limits are closed: touching counts, with equal ends.
+    #[inline]
+    pub fn edge(&self, from: &[u16], to: &[u16]) -> Inside {
+        let mut inside: Inside = smallvec![[0.0, 1.0]];
+        for &(joint, arc) in &self.active {
+            let x = i32::from(from[joint].wrapping_sub(arc.start));
+            let step = i32::from(to[joint].wrapping_sub(from[joint]) as i16);
+            let width = i32::from(arc.width);
+            // The usual cases: the joint stays inside, or stays in the gap.
+            let end = x + step;
+            if x <= width && (0..=width).contains(&end) {
+                continue;
+            }
+            if x > width && end > width && end < 65536 {
+                return Inside::new();
+            }
+            intersect(&mut inside, &crossings(x, step, width));
+            if inside.is_empty() {
+                return inside;
+            }
+        }
+        inside
+    }
+
+    /// Calls `emit` with the number of every edge of `piece` that has a part inside, that part,
+    /// and the edge's ends.
+    #[inline]
+    pub fn walk<'a>(
+        &self,
+        piece: &'a [u16],
+        joints: usize,
+        mut emit: impl FnMut(usize, [f32; 2], &'a [u16], &'a [u16]),
+    ) {
+        let mut vertices = piece.chunks_exact(joints);
+        let Some(mut from) = vertices.next() else {
+            return;
+        };
+        for (index, to) in vertices.enumerate() {
+            for part in self.edge(from, to) {
+                emit(index, part, from, to);
+            }
+            from = to;
+        }
+        // A piece of a single vertex has no edge.
+        if piece.len() == joints && self.holds(from) {
+            emit(0, [0.0, 0.0], from, from);
+        }
+    }
+}
+
+/// Where x + u · step, u in [0, 1], lies in [0, width] modulo a turn.
+fn crossings(x: i32, step: i32, width: i32) -> Inside {
+    let mut found = Inside::new();
+    if step == 0 {
+        if x <= width {
+            found.push([0.0, 1.0]);
+        }
+        return found;
+    }
+    let turns = if step > 0 {
+        [0, 65536, 131_072]
+    } else {
+        [65536, 0, -65536]
+    };
+    for turn in turns {
+        let at = |value: i32| (value - x) as f32 / step as f32;
+        let (low, high) = (at(turn), at(turn + width));
+        let part = [low.min(high).max(0.0), low.max(high).min(1.0)];
+        if part[0] <= part[1] {
+            found.push(part);
+        }
+    }
+    found
+}
+
+fn intersect(parts: &mut Inside, others: &Inside) {
+    let mut common = Inside::new();
+    for a in parts.iter() {
+        for b in others {
+            let part = [a[0].max(b[0]), a[1].min(b[1])];
+            if part[0] <= part[1] {
+                common.push(part);
+            }
+        }
+    }
+    *parts = common;
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn arc(start: u16, width: u16) -> Arc16 {
+        Arc16 { start, width }
+    }
+
+    #[test]
+    fn an_edge_is_cut_at_both_limits() {
+        let limits = Box16::new([(0, arc(100, 50)), (1, Arc16::full())]);
+        assert_eq!(limits.edge(&[0, 7], &[200, 7])[..], [[0.5, 0.75]]);
+        assert_eq!(limits.edge(&[200, 7], &[0, 7])[..], [[0.25, 0.5]]);
+        assert!(limits.edge(&[0, 7], &[90, 7]).is_empty());
+        assert_eq!(limits.edge(&[110, 7], &[130, 7])[..], [[0.0, 1.0]]);
+    }
+
+    /// Through the gap of a nearly full circle: inside, outside, inside again.
+    #[test]
+    fn an_edge_may_cross_a_narrow_gap() {
+        let limits = Box16::new([(0, arc(10, 65_515))]);
+        let parts = limits.edge(&[65_500, 0], &[40, 0]);
+        assert_eq!(parts.len(), 2);
+        assert_eq!((parts[0][0], parts[1][1]), (0.0, 1.0));
+        assert!(parts[0][1] < parts[1][0]);
+    }
+
+    #[test]
+    fn limits_of_width_zero_are_hit_in_a_point() {
+        let limits = Box16::new([(0, arc(50, 0))]);
+        assert_eq!(limits.edge(&[0], &[100])[..], [[0.5, 0.5]]);
+        assert_eq!(limits.edge(&[50], &[50])[..], [[0.0, 1.0]]);
+    }
+
+    /// Against sampling, for random edges and arcs.
+    #[test]
+    fn agrees_with_sampling() {
+        use rand::Rng;
+        let mut rng = crate::sampling::stream(5, 0);
+        for _ in 0..2000 {
+            let limit = arc(rng.random(), rng.random_range(0..65_535));
+            let limits = Box16::new([(0, limit)]);
+            let (from, step): (u16, i16) = (rng.random(), rng.random());
+            let to = from.wrapping_add(step as u16);
+            let parts = limits.edge(&[from], &[to]);
+            let inside = (0..=1000).filter(|k| {
+                let offset = (f64::from(step) * f64::from(*k) / 1000.0).round() as i32;
+                limit.contains(from.wrapping_add(offset as u16))
+            });
+            let measure: f32 = parts.iter().map(|p| p[1] - p[0]).sum();
+            let sampled = inside.count() as f32 / 1001.0;
+            assert!((measure - sampled).abs() < 5e-3, "{measure} {sampled}");
+        }
+    }
+}

@@ -1,0 +1,229 @@
+//! Rotation sets of one sample for given artificial limits: the definition, by interval
+//! arithmetic on the packed pre-image.
+//!
+//! With A the limits, Θ the ranges and M the pre-image of the sample x at azimuth 0 [S4 §III.C]:
+//! - joint i ≥ 2 locked: A_i ⊂ Θ_i, whatever β;
+//! - joint 1 locked: B₁ = { β : A₁ − β ⊂ Θ₁ };
+//! - before a failure: B₀ = A₁ − T with T the θ₁-image of M inside A₂ × … × A_n;
+//! - B = B₀ ∩ B₁ if every i ≥ 2 passes.
+//!
+//! The papers take one minimum and maximum of θ₁ per manifold for T, which over-counts where a
+//! manifold leaves the box and returns; [`Rule::Paper`] does so for comparison.
+
+use super::block::{BlockView, PoseRecord};
+use super::clip::Box16;
+use super::turn16::{Arc16, STEP, angle_set};
+use crate::angle::{AngleSet, Arc};
+use crate::workspace::{ArtificialLimits, FailureSet};
+use serde::{Deserialize, Serialize};
+use smallvec::SmallVec;
+use std::f64::consts::TAU;
+
+/// How T is formed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Rule {
+    /// The set itself: the union of segments.
+    #[default]
+    Definition,
+    /// One interval of θ₁ per manifold [S4 eqs. 16, 17].
+    Paper,
+}
+
+/// Artificial limits prepared for scoring.
+#[derive(Clone, Debug)]
+pub(super) struct Limits16 {
+    /// Limits of every joint.
+    pub arcs: Vec<Arc16>,
+    /// A₁, exactly.
+    pub first: Arc,
+    /// The box of the other joints.
+    pub rest: Box16,
+    /// Which joints may lock.
+    pub prone: Vec<bool>,
+    pub rule: Rule,
+}
+
+impl Limits16 {
+    pub fn new(limits: &ArtificialLimits, failures: &FailureSet, rule: Rule) -> Limits16 {
+        let arcs: Vec<Arc16> = limits
+            .joints()
+            .iter()
+            .map(|limit| Arc16::nearest(&limit.arc()))
+            .collect();
+        let first = limits
+            .joints()
+            .first()
+            .map_or(Arc::FULL, |limit| limit.arc());
+        let rest = Box16::new(arcs.iter().copied().enumerate().skip(1));
+        Limits16 {
+            prone: (1..=arcs.len())
+                .map(|joint| failures.contains(joint))
+                .collect(),
+            arcs,
+            first,
+            rest,
+            rule,
+        }
+    }
+
+    /// Whether the sample survives a lock of any joint i ≥ 2 that may lock.
+    #[inline]
+    pub fn survives_locks<'r>(&self, mut ranges: impl Iterator<Item = &'r [Arc16]>) -> bool {
+        let first = ranges.next().unwrap_or_default();
+        if self.prone[0] && !fits_somewhere(self.arcs[0], first) {
+            return false;
+        }
+        self.arcs[1..]
+            .iter()
+            .zip(&self.prone[1..])
+            .zip(ranges)
+            .all(|((limit, prone), range)| !prone || covers(range, *limit))
+    }
+
+    /// T: the θ₁ values of the pre-image inside the limits of the other joints.
+    pub fn image<'p>(&self, joints: usize, pieces: impl Iterator<Item = &'p [u16]>) -> AngleSet {
+        AngleSet::from_arcs(pieces.flat_map(|piece| {
+            let runs = runs_of_theta_1(&self.rest, piece, joints);
+            match self.rule {
+                Rule::Definition => runs,
+                Rule::Paper => hull(&runs),
+            }
+            .into_iter()
+            .map(|[low, high]| Arc::from_interval(low, high))
+        }))
+    }
+
+    /// B₁ if joint 1 may lock, else all angles.
+    fn after_lock_of_1(&self, range: &[Arc16]) -> AngleSet {
+        if self.prone[0] {
+            self.lock_of_1(range)
+        } else {
+            AngleSet::full()
+        }
+    }
+
+    /// B₁, with Θ₁ the range of joint 1.
+    pub fn lock_of_1(&self, range: &[Arc16]) -> AngleSet {
+        // β passes if A₁ − β ⊂ Θ₁: the mirror image of the erosion of Θ₁ by A₁.
+        angle_set(range).erosion(&self.first).mirrored()
+    }
+
+    /// B₀, with T the image.
+    pub fn before_failure(&self, image: &AngleSet) -> AngleSet {
+        image.mirrored().sum(&self.first)
+    }
+
+    /// B of pose `index`.
+    pub fn rotation_set(&self, view: &BlockView, index: usize) -> AngleSet {
+        if !self.survives_locks(view.ranges(index)) {
+            return AngleSet::empty();
+        }
+        let pose = &view.poses[index];
+        if self.is_free_of_joint_1() {
+            let inside = self.is_ever_inside(view, pose);
+            return if inside {
+                AngleSet::full()
+            } else {
+                AngleSet::empty()
+            };
+        }
+        let before = self.before_failure(&self.image(view.joints, view.pieces(pose)));
+        let after = self.after_lock_of_1(view.ranges(index).next().unwrap_or_default());
+        before.intersection(&after)
+    }
+
+    /// |B| of pose `index`.
+    pub fn measure(&self, view: &BlockView, index: usize) -> f64 {
+        if !self.survives_locks(view.ranges(index)) {
+            return 0.0;
+        }
+        let pose = &view.poses[index];
+        if self.is_free_of_joint_1() {
+            return if self.is_ever_inside(view, pose) {
+                TAU
+            } else {
+                0.0
+            };
+        }
+        let before = self.before_failure(&self.image(view.joints, view.pieces(pose)));
+        let after = self.after_lock_of_1(view.ranges(index).next().unwrap_or_default());
+        before.overlap(&after)
+    }
+
+    /// Whether joint 1 may turn freely: then B is all or nothing. (If it may lock, the test of
+    /// [`Limits16::survives_locks`] has found Θ₁ full.)
+    pub fn is_free_of_joint_1(&self) -> bool {
+        self.first.is_full()
+    }
+
+    /// Whether any part of the pre-image lies in the box of the joints from 2 on.
+    pub fn is_ever_inside(&self, view: &BlockView, pose: &PoseRecord) -> bool {
+        self.rest.active.is_empty() && pose.pieces > 0
+            || view.pieces(pose).any(|piece| {
+                let mut vertices = piece.chunks_exact(view.joints);
+                let mut from = vertices.next().unwrap_or_default();
+                vertices.any(|to| {
+                    let inside = !self.rest.edge(from, to).is_empty();
+                    from = to;
+                    inside
+                })
+            })
+    }
+}
+
+/// Whether one of the arcs holds all of `limit`.
+#[inline]
+pub(super) fn covers(range: &[Arc16], limit: Arc16) -> bool {
+    range.iter().any(|arc| arc.covers(limit))
+}
+
+/// Whether one of the arcs is as wide as `limit`, wherever that lies.
+#[inline]
+fn fits_somewhere(limit: Arc16, range: &[Arc16]) -> bool {
+    range
+        .iter()
+        .any(|arc| arc.is_full() || arc.width >= limit.width && !limit.is_full())
+}
+
+/// Intervals of θ₁, radians, over the connected parts of `piece` inside the box; unwrapped within
+/// each part.
+fn runs_of_theta_1(limits: &Box16, piece: &[u16], joints: usize) -> SmallVec<[[f64; 2]; 4]> {
+    let mut runs: SmallVec<[[f64; 2]; 4]> = SmallVec::new();
+    // Edge, parameter and unwrapped θ₁ (steps) at which the last part ended.
+    let mut ended = (usize::MAX, 0.0, 0);
+    limits.walk(piece, joints, |index, part, from, to| {
+        let step = i32::from(to[0].wrapping_sub(from[0]) as i16);
+        let continues = part[0] == 0.0 && ended.1 == 1.0 && ended.0.wrapping_add(1) == index;
+        let at = if continues {
+            ended.2
+        } else {
+            i32::from(from[0])
+        };
+        let value = |u: f32| (f64::from(at) + f64::from(u) * f64::from(step)) * STEP;
+        let (a, b) = (value(part[0]), value(part[1]));
+        let (low, high) = (a.min(b), a.max(b));
+        match runs.last_mut() {
+            Some(run) if continues => *run = [run[0].min(low), run[1].max(high)],
+            _ => runs.push([low, high]),
+        }
+        ended = (index, part[1], at + step);
+    });
+    runs
+}
+
+/// One interval around all parts of a manifold, as the papers have it.
+///
+/// The papers unwrap θ₁ along the manifold; parts are given modulo a turn, so they are laid out
+/// next to the first one.
+fn hull(runs: &[[f64; 2]]) -> SmallVec<[[f64; 2]; 4]> {
+    let Some(&first) = runs.first() else {
+        return SmallVec::new();
+    };
+    let mut around = first;
+    for run in &runs[1..] {
+        let shift = ((first[0] - run[0]) / TAU).round() * TAU;
+        around = [around[0].min(run[0] + shift), around[1].max(run[1] + shift)];
+    }
+    SmallVec::from_iter([around])
+}
