@@ -18,4 +18,11 @@ pub trait Objective: Sync {
 
     /// The score of a point of the box.
     fn score(&self, x: &[f64]) -> f64;
+
+    /// The scores of the points x + t · direction for all `ts` (ascending), if the objective
+    /// knows a way that is faster than one by one.
+    fn scores_along(&self, x: &[f64], direction: &[f64], ts: &[f64]) -> Option<Vec<f64>> {
+        let _ = (x, direction, ts);
+        None
+    }
 }

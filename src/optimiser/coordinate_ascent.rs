@@ -240,11 +240,13 @@ impl Climber {
                 range,
             };
             let scans = self.sweep < settings.scout_sweeps && index < space.directions.len();
-            let found = if scans {
-                line.scan(settings.line_samples.max(4))
-            } else {
-                line.step(self.step_length(index, range))
-            };
+            let found = line.exact().unwrap_or_else(|| {
+                if scans {
+                    line.scan(settings.line_samples.max(4))
+                } else {
+                    line.step(self.step_length(index, range))
+                }
+            });
             self.accept(space, &direction, found);
         }
         self.move_index += 1;

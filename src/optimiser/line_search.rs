@@ -23,6 +23,12 @@ pub(super) struct Found {
     pub evaluations: u64,
 }
 
+/// Points of a pass over a line whose scores come all at once.
+const PASS: usize = 121;
+
+/// Passes over a line: the first over all of it, each further one around the best.
+const PASSES: usize = 3;
+
 /// Golden-section refinements after a scan: the bracket shrinks by 0.618 each.
 const REFINEMENTS: usize = 8;
 
@@ -72,6 +78,32 @@ impl Line<'_> {
             }
         }
         best
+    }
+
+    /// The maximum over the whole line, if the objective gives all scores of a line at once.
+    pub fn exact(&self) -> Option<Found> {
+        let mut best = Found {
+            t: 0.0,
+            score: self.score,
+            step: 0.0,
+            evaluations: 0,
+        };
+        let mut range = self.range;
+        for _ in 0..PASSES {
+            let spacing = (range[1] - range[0]) / (PASS - 1) as f64;
+            let ts: Vec<f64> = (0..PASS).map(|k| range[0] + k as f64 * spacing).collect();
+            let scores = self.objective.scores_along(self.x, self.direction, &ts)?;
+            best.evaluations += PASS as u64;
+            for (&t, &score) in ts.iter().zip(&scores) {
+                best.offer(t, score);
+            }
+            range = [
+                (best.t - spacing).max(self.range[0]),
+                (best.t + spacing).min(self.range[1]),
+            ];
+        }
+        best.step = best.t.abs();
+        Some(best)
     }
 
     /// Steps by `step` to the better side, doubling while it pays; if neither side is better, tries

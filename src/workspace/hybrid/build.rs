@@ -111,8 +111,8 @@ impl Packer {
         let mut parts: Vec<Vec<u16>> = Vec::new();
         let mut ended = (usize::MAX, 0.0);
         self.inner.walk(&self.flat, n, |index, part, from, to| {
-            let at = |u: f32, joint: usize| {
-                let step = f32::from(to[joint].wrapping_sub(from[joint]) as i16);
+            let at = |u: f64, joint: usize| {
+                let step = f64::from(to[joint].wrapping_sub(from[joint]) as i16);
                 from[joint].wrapping_add((u * step).round() as i32 as u16)
             };
             let continues = part[0] == 0.0 && ended.1 == 1.0 && ended.0 + 1 == index;

@@ -10,7 +10,7 @@ pub(super) struct Box16 {
 }
 
 /// Parameters [from, to] of an edge that lie inside the box, in order.
-pub(super) type Inside = SmallVec<[[f32; 2]; 2]>;
+pub(super) type Inside = SmallVec<[[f64; 2]; 2]>;
 
 impl Box16 {
     /// The box of the given arcs, `(joint, arc)` with joints counted from 0.
@@ -59,7 +59,7 @@ impl Box16 {
         &self,
         piece: &'a [u16],
         joints: usize,
-        mut emit: impl FnMut(usize, [f32; 2], &'a [u16], &'a [u16]),
+        mut emit: impl FnMut(usize, [f64; 2], &'a [u16], &'a [u16]),
     ) {
         let mut vertices = piece.chunks_exact(joints);
         let Some(mut from) = vertices.next() else {
@@ -93,7 +93,7 @@ fn crossings(x: i32, step: i32, width: i32) -> Inside {
         [65536, 0, -65536]
     };
     for turn in turns {
-        let at = |value: i32| (value - x) as f32 / step as f32;
+        let at = |value: i32| f64::from(value - x) / f64::from(step);
         let (low, high) = (at(turn), at(turn + width));
         let part = [low.min(high).max(0.0), low.max(high).min(1.0)];
         if part[0] <= part[1] {
@@ -165,8 +165,8 @@ mod tests {
                 let offset = (f64::from(step) * f64::from(*k) / 1000.0).round() as i32;
                 limit.contains(from.wrapping_add(offset as u16))
             });
-            let measure: f32 = parts.iter().map(|p| p[1] - p[0]).sum();
-            let sampled = inside.count() as f32 / 1001.0;
+            let measure: f64 = parts.iter().map(|p| p[1] - p[0]).sum();
+            let sampled = inside.count() as f64 / 1001.0;
             assert!((measure - sampled).abs() < 5e-3, "{measure} {sampled}");
         }
     }

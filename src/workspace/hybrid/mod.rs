@@ -11,6 +11,7 @@ mod build;
 mod clip;
 mod plan;
 mod polyline;
+mod profile;
 mod score;
 mod sizes;
 mod store;
@@ -18,6 +19,7 @@ mod turn16;
 
 pub use atlas::{Atlas, AtlasError, AtlasRecipe, AtlasSettings, Prediction};
 pub use plan::{Region, Sample, SamplePlan, Sampling};
+pub use profile::Growth;
 pub use score::Rule;
 pub use sizes::SampleCounts;
 pub use store::{AtlasKey, AtlasStore};

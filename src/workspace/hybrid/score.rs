@@ -71,7 +71,7 @@ impl Limits16 {
     #[inline]
     pub fn survives_locks<'r>(&self, mut ranges: impl Iterator<Item = &'r [Arc16]>) -> bool {
         let first = ranges.next().unwrap_or_default();
-        if self.prone[0] && !fits_somewhere(self.arcs[0], first) {
+        if !self.first_fits(first) {
             return false;
         }
         self.arcs[1..]
@@ -79,6 +79,12 @@ impl Limits16 {
             .zip(&self.prone[1..])
             .zip(ranges)
             .all(|((limit, prone), range)| !prone || covers(range, *limit))
+    }
+
+    /// Whether some β lets A₁ lie in Θ₁, or joint 1 does not lock.
+    #[inline]
+    pub fn first_fits(&self, range: &[Arc16]) -> bool {
+        !self.prone[0] || fits_somewhere(self.arcs[0], range)
     }
 
     /// T: the θ₁ values of the pre-image inside the limits of the other joints.
@@ -200,7 +206,7 @@ fn runs_of_theta_1(limits: &Box16, piece: &[u16], joints: usize) -> SmallVec<[[f
         } else {
             i32::from(from[0])
         };
-        let value = |u: f32| (f64::from(at) + f64::from(u) * f64::from(step)) * STEP;
+        let value = |u: f64| (f64::from(at) + u * f64::from(step)) * STEP;
         let (a, b) = (value(part[0]), value(part[1]));
         let (low, high) = (a.min(b), a.max(b));
         match runs.last_mut() {

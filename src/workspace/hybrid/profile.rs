@@ -1,0 +1,316 @@
+//! S_F as a function of one joint's limits, for many widths in one pass over the atlas.
+//!
+//! As the limits of joint j grow from width 0 on, every part of a pre-image inside the box of
+//! the *other* joints enters at a known width, and the pose is lost at the width at which A_j
+//! leaves Θ_j. So one walk along the pre-image serves all widths, and the result at each of them
+//! is the very number that scoring these limits alone would give (to round-off).
+
+use super::atlas::Atlas;
+use super::block::{BlockView, PoseRecord};
+use super::clip::Box16;
+use super::score::{Limits16, Rule, covers};
+use super::turn16::{Arc16, STEP, angle_set};
+use crate::angle::{AngleSet, Arc};
+use crate::workspace::{ArtificialLimits, FailureSet};
+use rayon::prelude::*;
+use std::f64::consts::TAU;
+
+/// How limits grow with their width.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Growth {
+    /// The upper limit stays: [ā − w, ā].
+    Lower,
+    /// The lower limit stays: [a̲, a̲ + w].
+    Upper,
+    /// The middle stays: [m − w/2, m + w/2].
+    Both,
+}
+
+/// One joint's limits with all their widths.
+struct Family {
+    /// The joint, from 0.
+    joint: usize,
+    growth: Growth,
+    /// The end or middle that stays, steps.
+    anchor: u16,
+    /// Widths in steps, ascending.
+    widths: Vec<i32>,
+}
+
+impl Atlas {
+    /// S_F for `limits` with those of `joint` (from 0) replaced by every width of `widths`
+    /// (radians, ascending, in [0, 2π]).
+    pub fn profile(
+        &self,
+        limits: &ArtificialLimits,
+        failures: &FailureSet,
+        joint: usize,
+        growth: Growth,
+        widths: &[f64],
+    ) -> Vec<f64> {
+        let fixed = Limits16::new(limits, failures, Rule::Definition);
+        let parts: Vec<Vec<f64>> = if joint == 0 {
+            self.views()
+                .map(|view| first_joint(&view, &fixed, widths))
+                .collect()
+        } else {
+            let family = Family::new(limits, joint, growth, widths);
+            let others = fixed.arcs.iter().copied().enumerate().skip(1);
+            let rest = Box16::new(others.filter(|(other, _)| *other != joint));
+            self.views()
+                .map(|view| other_joint(&view, &fixed, &rest, &family))
+                .collect()
+        };
+        let mut sums = vec![0.0; widths.len()];
+        for part in parts {
+            for (sum, add) in sums.iter_mut().zip(part) {
+                *sum += add;
+            }
+        }
+        sums
+    }
+}
+
+impl Family {
+    fn new(limits: &ArtificialLimits, joint: usize, growth: Growth, widths: &[f64]) -> Family {
+        let limit = limits.joints()[joint];
+        let anchor = match growth {
+            Growth::Lower => limit.upper,
+            Growth::Upper => limit.lower,
+            Growth::Both => limit.centre(),
+        };
+        Family {
+            joint,
+            growth,
+            anchor: super::turn16::quantise(anchor),
+            widths: widths.iter().map(|width| (width / STEP).round() as i32).collect(),
+        }
+    }
+
+    /// Number of widths up to and with the largest at which the limits still lie in `range`.
+    fn fitting(&self, range: &[Arc16]) -> usize {
+        let largest = range.iter().filter_map(|arc| self.room(*arc)).max();
+        largest.map_or(0, |room| self.widths.partition_point(|&width| width <= room))
+    }
+
+    /// The largest width at which the limits lie in `arc`.
+    fn room(&self, arc: Arc16) -> Option<i32> {
+        if arc.is_full() {
+            return Some(65_536);
+        }
+        let below = i32::from(self.anchor.wrapping_sub(arc.start));
+        let above = i32::from(arc.width) - below;
+        (above >= 0).then(|| match self.growth {
+            Growth::Lower => below,
+            Growth::Upper => above,
+            Growth::Both => 2 * below.min(above),
+        })
+    }
+
+    /// Calls `take` with pieces of an edge part on which the width of entry is linear: parameters
+    /// [u, v] of the edge and the widths at both.
+    fn entries(
+        &self,
+        from: u16,
+        to: u16,
+        part: [f64; 2],
+        mut take: impl FnMut([f64; 2], [f64; 2]),
+    ) {
+        let step = f64::from(to.wrapping_sub(from) as i16);
+        // Distance from the anchor in the direction of growth, in [0, 65536) at the start.
+        let (start, slope) = match self.growth {
+            Growth::Lower => (self.anchor.wrapping_sub(from), -step),
+            _ => (from.wrapping_sub(self.anchor), step),
+        };
+        let x = |u: f64| f64::from(start) + u * slope;
+        // The entry width has kinks where x passes a multiple of a (half) turn.
+        let kink = if self.growth == Growth::Both { 32_768.0 } else { 65_536.0 };
+        let (mut u, end) = (part[0], part[1]);
+        loop {
+            let turn = (x(0.5 * (u + end.min(u + 1e-3))) / kink).floor();
+            let next = if slope > 0.0 { turn + 1.0 } else { turn };
+            let mut v = end;
+            if slope != 0.0 {
+                let crossing = (next * kink - f64::from(start)) / slope;
+                if crossing > u && crossing < end {
+                    v = crossing;
+                }
+            }
+            let width = |u: f64| {
+                // A kink is hit exactly: width 0 must be entered at width 0.
+                let y = x(u) - turn * kink;
+                let y = if (y - (y / kink).round() * kink).abs() < 1e-6 {
+                    (y / kink).round() * kink
+                } else {
+                    y
+                };
+                match self.growth {
+                    Growth::Both if turn.rem_euclid(2.0) == 0.0 => 2.0 * y,
+                    Growth::Both => 2.0 * (kink - y),
+                    _ => y,
+                }
+            };
+            take([u, v], [width(u), width(v)]);
+            if v >= end {
+                return;
+            }
+            u = v;
+        }
+    }
+}
+
+/// All widths of joint 1, symmetric as always.
+fn first_joint(view: &BlockView, fixed: &Limits16, widths: &[f64]) -> Vec<f64> {
+    let mut sums = vec![0.0; widths.len()];
+    for (index, pose) in view.poses.iter().enumerate() {
+        let mut ranges = view.ranges(index);
+        let range = ranges.next().unwrap_or_default();
+        if !fixed.survives_others(ranges, 0) {
+            continue;
+        }
+        let image = fixed.image(view.joints, view.pieces(pose));
+        if image.is_empty() {
+            continue;
+        }
+        let after = fixed.prone[0].then(|| angle_set(range));
+        for (sum, &width) in sums.iter_mut().zip(widths) {
+            let limit = Arc::new(-0.5 * width, width);
+            *sum += pose.weight * fixed.overlap(&limit, &image, after.as_ref());
+        }
+    }
+    sums
+}
+
+/// All widths of a joint from 2 on.
+fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family) -> Vec<f64> {
+    // Differences of the sums from one width to the next.
+    let count = family.widths.len();
+    let mut steps = vec![0.0; count + 1];
+    let mut bins: Vec<Vec<Arc>> = vec![Vec::new(); count];
+    for (index, pose) in view.poses.iter().enumerate() {
+        let mut ranges = view.ranges(index);
+        let first = ranges.next().unwrap_or_default();
+        if !fixed.first_fits(first) || !fixed.survives_others(ranges, family.joint) {
+            continue;
+        }
+        let fits = if fixed.prone[family.joint] {
+            let own = view.ranges(index).nth(family.joint);
+            family.fitting(own.unwrap_or_default())
+        } else {
+            count
+        };
+        if fits == 0 {
+            continue;
+        }
+        if fixed.is_free_of_joint_1() {
+            let entry = first_entry(view, pose, rest, family);
+            let on = family.widths.partition_point(|&width| (width as f64) < entry);
+            if on < fits {
+                steps[on] += pose.weight * TAU;
+                steps[fits] -= pose.weight * TAU;
+            }
+        } else {
+            collect(view, pose, rest, family, &mut bins[..fits]);
+            let after = fixed.prone[0].then(|| angle_set(first));
+            let mut last = 0.0;
+            let mut image = AngleSet::empty();
+            for (bin, step) in bins[..fits].iter_mut().zip(&mut steps) {
+                if bin.is_empty() {
+                    continue;
+                }
+                image = image.union(&AngleSet::from_arcs(bin.drain(..)));
+                let measure = pose.weight * fixed.overlap(&fixed.first, &image, after.as_ref());
+                *step += measure - last;
+                last = measure;
+            }
+            steps[fits] -= last;
+        }
+    }
+    let mut sum = 0.0;
+    steps.truncate(count);
+    for step in &mut steps {
+        sum += *step;
+        *step = sum.max(0.0);
+    }
+    steps
+}
+
+/// The least width at which the pre-image enters the box.
+fn first_entry(view: &BlockView, pose: &PoseRecord, rest: &Box16, family: &Family) -> f64 {
+    let mut least = f64::INFINITY;
+    for piece in view.pieces(pose) {
+        rest.walk(piece, view.joints, |_, part, from, to| {
+            family.entries(from[family.joint], to[family.joint], part, |_, widths| {
+                least = least.min(widths[0]).min(widths[1]);
+            });
+        });
+    }
+    least
+}
+
+/// Sorts the θ₁ values of all parts into the first width at which they are inside.
+fn collect(
+    view: &BlockView,
+    pose: &PoseRecord,
+    rest: &Box16,
+    family: &Family,
+    bins: &mut [Vec<Arc>],
+) {
+    let widths = &family.widths[..bins.len()];
+    for piece in view.pieces(pose) {
+        rest.walk(piece, view.joints, |_, part, from, to| {
+            let step = f64::from(to[0].wrapping_sub(from[0]) as i16);
+            let theta = |u: f64| f64::from(f64::from(from[0]) + u * step) * STEP;
+            let (a, b) = (from[family.joint], to[family.joint]);
+            family.entries(a, b, part, |[u, v], [start, end]| {
+                // In the order of growing width.
+                let (u, v, low, high) = match start <= end {
+                    true => (u, v, start, end),
+                    false => (v, u, end, start),
+                };
+                let at = |width: f64| {
+                    let share = ((width - low) / (high - low).max(1e-6)).clamp(0.0, 1.0);
+                    theta(u + share * (v - u))
+                };
+                let mut bin = widths.partition_point(|&width| (width as f64) < low);
+                let mut begin = theta(u);
+                while bin < bins.len() {
+                    let stop = at(widths[bin] as f64);
+                    bins[bin].push(Arc::from_interval(begin.min(stop), begin.max(stop)));
+                    if widths[bin] as f64 >= high {
+                        break;
+                    }
+                    begin = stop;
+                    bin += 1;
+                }
+            });
+        });
+    }
+}
+
+impl Limits16 {
+    /// Whether the sample survives locks of all joints i ≥ 2 but `except` (from 0); `ranges`
+    /// begin with joint 2.
+    fn survives_others<'r>(
+        &self,
+        ranges: impl Iterator<Item = &'r [Arc16]>,
+        except: usize,
+    ) -> bool {
+        ranges.enumerate().all(|(k, range)| {
+            let joint = k + 1;
+            joint == except || !self.prone[joint] || covers(range, self.arcs[joint])
+        })
+    }
+
+    /// |B₀ ∩ B₁| for A₁ = `limit`, the image T and the range Θ₁ (if joint 1 may lock).
+    fn overlap(&self, limit: &Arc, image: &AngleSet, range: Option<&AngleSet>) -> f64 {
+        let before = image.mirrored().sum(limit);
+        match range {
+            Some(range) => before.overlap(&range.erosion(limit).mirrored()),
+            None => before.measure(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
