@@ -2,16 +2,19 @@
 //!
 //! With one degree of redundancy the pre-image of a task point is a set of curves
 //! ([`SelfMotionManifold`]), almost always closed. [`PreImageSearch`] finds all of them from
-//! random starts and says how sure that is ([`Completeness`]).
+//! random starts and says how sure that is ([`Completeness`]). [`CurveSource`] serves many task
+//! points in a row and robots of more redundancy, whose pre-images it cuts into curves.
 //!
 //! Knows nothing of grids, volumes or rotations about joint 1.
 
 mod any_solver;
+mod ascent;
 mod curve;
 mod pre_image;
 mod seeds;
 mod segment;
 mod self_motion;
+mod sliced;
 mod solver;
 mod source;
 mod trace;
@@ -19,6 +22,7 @@ mod trace;
 pub use curve::CurveStatus;
 pub use pre_image::{Completeness, ManifoldError, PreImage, PreImageSearch};
 pub use self_motion::{CriticalPoint, SelfMotionManifold};
+pub use sliced::Faces;
 pub use solver::SearchSettings;
-pub use source::{CurveRef, CurveSource};
+pub use source::{CurveRef, CurveSource, MOST_REDUNDANT};
 pub use trace::TraceSettings;

@@ -4,8 +4,9 @@ use super::any_solver::{AnySolver, CurveVisitor};
 use super::curve::{Curve, CurveStatus};
 use super::pre_image::ManifoldError;
 use super::segment::Segment;
+use super::sliced::{Faces, Sliced};
 use super::solver::SearchSettings;
-use crate::angle::Arc;
+use crate::angle::{AngleSet, Arc};
 use crate::design::{Robot, TaskSpace};
 use crate::kinematics::{Chain, Goal};
 use nalgebra::Isometry3;
@@ -25,6 +26,27 @@ pub struct CurveRef<'a> {
 }
 
 impl<'a> CurveRef<'a> {
+    pub(super) fn new(
+        joints: usize,
+        points: &'a [f64],
+        tangents: &'a [f64],
+        status: CurveStatus,
+        winding: &'a [i32],
+    ) -> CurveRef<'a> {
+        CurveRef {
+            joints,
+            points,
+            tangents,
+            status,
+            winding,
+        }
+    }
+
+    /// Full turns of every joint along the curve.
+    pub fn winding(&self) -> &'a [i32] {
+        self.winding
+    }
+
     /// The number of vertices, at least 1.
     pub fn vertices(&self) -> usize {
         self.points.len() / self.joints
@@ -35,7 +57,8 @@ impl<'a> CurveRef<'a> {
         &self.points[index * self.joints..][..self.joints]
     }
 
-    fn tangent(&self, index: usize) -> &'a [f64] {
+    /// Unit tangent at vertex `index`.
+    pub fn tangent(&self, index: usize) -> &'a [f64] {
         &self.tangents[index * self.joints..][..self.joints]
     }
 
@@ -98,37 +121,57 @@ impl<'a> CurveRef<'a> {
     }
 }
 
-/// Finds the curves of one task point after the other, for one degree of redundancy.
+/// Finds the pre-image of one task point after the other, as curves.
 #[derive(Clone, Debug)]
 pub struct CurveSource {
     chain: Chain,
-    solver: AnySolver,
     settings: SearchSettings,
+    method: Method,
 }
+
+#[derive(Clone, Debug)]
+enum Method {
+    /// One degree of redundancy: the pre-image is curves.
+    Curves(AnySolver),
+    /// More: it is cut into curves.
+    Slices(Box<Sliced>),
+}
+
+/// Largest degree of redundancy that is served.
+pub const MOST_REDUNDANT: usize = 3;
 
 impl CurveSource {
     /// Curves of `robot` for `task`, in the frame of joint 1 (see
-    /// [`crate::kinematics::Chain::base`]).
+    /// [`crate::kinematics::Chain::base`]). With more than one degree of redundancy, `slices`
+    /// values of each surplus joint.
     ///
     /// # Errors
-    /// Another degree of redundancy than 1, or a prismatic joint without limits.
+    /// A degree of redundancy outside 1 … [`MOST_REDUNDANT`], or a prismatic joint without
+    /// limits.
     pub fn new(
         robot: &Robot,
         task: TaskSpace,
+        slices: usize,
         settings: SearchSettings,
     ) -> Result<CurveSource, ManifoldError> {
         let mut chain = Chain::new(robot).ok_or(ManifoldError::Unlimited)?;
         chain.base = Isometry3::identity();
-        let solver = AnySolver::new(&chain, task).ok_or_else(|| ManifoldError::Redundancy {
-            joints: robot.joints(),
-            dimension: task.dimension(),
-            degree: robot.degree_of_redundancy(task),
-            wanted: "1",
-        })?;
+        let method = AnySolver::new(&chain, task)
+            .map(Method::Curves)
+            .or_else(|| {
+                let sliced = Sliced::new(&chain, task, slices.max(4), settings)?;
+                Some(Method::Slices(Box::new(sliced)))
+            })
+            .ok_or_else(|| ManifoldError::Redundancy {
+                joints: robot.joints(),
+                dimension: task.dimension(),
+                degree: robot.degree_of_redundancy(task),
+                wanted: "1, 2 or 3",
+            })?;
         Ok(CurveSource {
             chain,
-            solver,
             settings,
+            method,
         })
     }
 
@@ -137,26 +180,86 @@ impl CurveSource {
         self.chain.len()
     }
 
-    /// Finds the curves of the tool pose `tool`, given in the frame of joint 1.
-    pub fn solve(&mut self, tool: &Isometry3<f64>, rng: &mut ChaCha8Rng) {
-        let goal = Goal::new(&self.chain, tool);
-        self.solver.solve(&goal, &self.settings, rng);
+    /// Half the distance between slices along each joint, radians: 0 where the pre-image is not
+    /// cut along that joint.
+    pub fn slabs(&self) -> Vec<f64> {
+        let mut slabs = vec![0.0; self.joints()];
+        if let Method::Slices(sliced) = &self.method {
+            for &joint in &sliced.cut {
+                slabs[joint] = 0.5 * sliced.spacing();
+            }
+        }
+        slabs
+    }
+
+    /// Finds the pre-image of the tool pose `tool`, given in the frame of joint 1; shows its
+    /// curves and returns the range Θ of every joint.
+    pub fn solve(
+        &mut self,
+        tool: &Isometry3<f64>,
+        rng: &mut ChaCha8Rng,
+        mut show: impl FnMut(CurveRef<'_>),
+    ) -> Vec<AngleSet> {
+        match &mut self.method {
+            Method::Curves(solver) => {
+                solver.solve(&Goal::new(&self.chain, tool), &self.settings, rng);
+                let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); self.chain.len()];
+                solver.show(|curve| {
+                    for (joint, arcs) in arcs.iter_mut().enumerate() {
+                        arcs.push(curve.range(joint));
+                    }
+                    show(curve);
+                });
+                arcs.into_iter().map(AngleSet::from_arcs).collect()
+            }
+            Method::Slices(sliced) => sliced.solve(tool, rng, &mut show),
+        }
+    }
+
+    /// The faces of a box of limits ([lower, upper] in internal radians, `None` where a joint is
+    /// free), for [`CurveSource::solve_faces`]; none with one degree of redundancy.
+    pub fn faces(&self, limits: &[Option<[f64; 2]>]) -> Option<Faces> {
+        match &self.method {
+            Method::Curves(_) => None,
+            Method::Slices(sliced) => Some(sliced.faces(limits)),
+        }
+    }
+
+    /// Shows the curves of the pre-image on the faces of a box.
+    pub fn solve_faces(
+        &mut self,
+        tool: &Isometry3<f64>,
+        faces: &mut Faces,
+        rng: &mut ChaCha8Rng,
+        mut show: impl FnMut(CurveRef<'_>),
+    ) {
+        if let Method::Slices(sliced) = &mut self.method {
+            sliced.solve_faces(tool, faces, rng, &mut show);
+        }
     }
 
     /// Random starts made for the last task point.
     pub fn seeds(&self) -> usize {
-        self.solver.effort().0
+        match &self.method {
+            Method::Curves(solver) => solver.effort().0,
+            Method::Slices(sliced) => sliced.seeds,
+        }
     }
 
     /// Whether every check of the last task point passed: all curves closed and the winding
     /// vectors sum to zero.
     pub fn is_sound(&self) -> bool {
-        self.solver.is_sound()
+        match &self.method {
+            Method::Curves(solver) => solver.is_sound(),
+            Method::Slices(sliced) => sliced.sound,
+        }
     }
+}
 
+impl AnySolver {
     /// Shows every curve of the last task point.
-    pub fn visit(&self, show: impl FnMut(CurveRef<'_>)) {
-        self.solver.visit(&mut Show(show));
+    pub(super) fn show(&self, show: impl FnMut(CurveRef<'_>)) {
+        self.visit(&mut Show(show));
     }
 }
 

@@ -1,13 +1,15 @@
 //! The pre-images of all samples of a plan, built once and scored many times.
 
 use super::block::BlockView;
-use super::build::{Packing, build_block};
+use super::build::{Focus, Packing, build_block};
 use super::plan::SamplePlan;
+use super::score::{Limits16, Rule};
 use super::store::{AtlasKey, AtlasStore, ShardBytes};
 use crate::angle::Arc;
 use crate::design::{JointKind, Robot};
 use crate::kinematics::fixed_transforms;
 use crate::manifold::{CurveSource, ManifoldError, SearchSettings};
+use crate::workspace::{ArtificialLimits, FailureSet};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::Range;
@@ -27,6 +29,9 @@ pub struct AtlasSettings {
     /// Largest distance between a stored polyline and its curve, radians. Memory falls with its
     /// square root; sizes hardly notice up to 0.05.
     pub tolerance: f64,
+    /// With more than one degree of redundancy: values of each surplus joint at which the
+    /// pre-image is cut into curves. Fewer: sizes come out too small.
+    pub slices: usize,
     /// How manifolds are searched and traced.
     pub search: SearchSettings,
     /// Bytes above which an atlas is not built.
@@ -37,6 +42,7 @@ impl Default for AtlasSettings {
     fn default() -> AtlasSettings {
         AtlasSettings {
             tolerance: 0.01,
+            slices: 32,
             search: SearchSettings::coarse(),
             memory_limit: 4 << 30,
         }
@@ -81,6 +87,8 @@ pub struct Atlas {
     pub(super) joints: usize,
     /// Physical limits of joint 1.
     pub(super) first_physical: Arc,
+    /// Half the distance between slices along every joint, radians.
+    pub(super) slabs: Vec<f64>,
     shards: Vec<ShardBytes>,
 }
 
@@ -91,7 +99,7 @@ pub struct AtlasRecipe {
     plan: SamplePlan,
     settings: AtlasSettings,
     source: CurveSource,
-    physical: Vec<Arc>,
+    packing: Packing,
 }
 
 /// Called with the number of finished shards and of all shards.
@@ -108,12 +116,31 @@ impl AtlasRecipe {
         settings: AtlasSettings,
     ) -> Result<AtlasRecipe, ManifoldError> {
         Ok(AtlasRecipe {
-            source: CurveSource::new(robot, plan.task, settings.search)?,
-            physical: physical_arcs(robot),
+            source: CurveSource::new(robot, plan.task, settings.slices, settings.search)?,
+            packing: Packing {
+                tolerance: settings.tolerance,
+                physical: physical_arcs(robot),
+                focus: None,
+            },
             robot: robot.clone(),
             plan,
             settings,
         })
+    }
+
+    /// The same, but for scoring `limits` alone: the atlas is small, and with more than one
+    /// degree of redundancy its images have their exact ends, which lie on the faces of the box.
+    pub fn focused(mut self, limits: &ArtificialLimits) -> AtlasRecipe {
+        let ends = limits.joints().iter().map(|limit| {
+            let is_free = limit.is_full();
+            (!is_free).then_some([limit.lower, limit.upper])
+        });
+        let faces = self.source.faces(&ends.collect::<Vec<_>>());
+        self.packing.focus = Some(Focus {
+            limits: limits.clone(),
+            faces,
+        });
+        self
     }
 
     /// The number of shards.
@@ -128,10 +155,15 @@ impl AtlasRecipe {
     /// The hash of everything that the content depends on.
     pub fn key(&self) -> AtlasKey {
         let mut text = format!(
-            "faultspace atlas {FORMAT} {}\n{:?}\n{:?}\n",
+            "faultspace atlas {FORMAT} {}\n{:?}\n{:?}\n{:?}\n",
             env!("CARGO_PKG_VERSION"),
             self.plan,
-            (self.settings.tolerance, self.settings.search),
+            (
+                self.settings.tolerance,
+                self.settings.slices,
+                self.settings.search
+            ),
+            self.packing.focus.as_ref().map(|focus| &focus.limits),
         );
         for transform in fixed_transforms(&self.robot) {
             let (t, r) = (transform.translation.vector, transform.rotation.coords);
@@ -165,10 +197,7 @@ impl AtlasRecipe {
     }
 
     fn block(&self, source: &mut CurveSource, range: Range<u64>) -> super::block::BlockBuilder {
-        let packing = Packing {
-            tolerance: self.settings.tolerance,
-        };
-        build_block(source, &self.physical, &self.plan, range, packing)
+        build_block(source, &mut self.packing.clone(), &self.plan, range)
     }
 
     /// Builds the atlas, or reads what `store` has of it; new shards are written to the store.
@@ -188,7 +217,11 @@ impl AtlasRecipe {
         Ok(Atlas {
             plan: self.plan.clone(),
             joints: self.robot.joints(),
-            first_physical: self.physical.first().copied().unwrap_or(Arc::FULL),
+            first_physical: *self.packing.physical.first().unwrap_or(&Arc::FULL),
+            slabs: match self.packing.focus {
+                None => self.source.slabs(),
+                Some(_) => vec![0.0; self.robot.joints()],
+            },
             shards,
         })
     }
@@ -297,6 +330,16 @@ fn physical_arcs(robot: &Robot) -> Vec<Arc> {
 }
 
 impl Atlas {
+    /// Limits prepared for this atlas.
+    pub(super) fn limits(
+        &self,
+        limits: &ArtificialLimits,
+        failures: &FailureSet,
+        rule: Rule,
+    ) -> Limits16 {
+        Limits16::new(limits, failures, rule, &self.slabs)
+    }
+
     /// What was sampled.
     pub fn plan(&self) -> &SamplePlan {
         &self.plan

@@ -4,15 +4,30 @@ use super::block::BlockBuilder;
 use super::clip::Box16;
 use super::plan::{Sample, SamplePlan};
 use super::polyline::Polyline;
+use super::score::runs_of_theta_1;
 use super::turn16::{Arc16, STEP, arcs16, quantise};
 use crate::angle::{AngleSet, Arc};
-use crate::manifold::{CurveRef, CurveSource};
+use crate::manifold::{CurveRef, CurveSource, Faces};
+use crate::workspace::ArtificialLimits;
 
-/// How closely pre-images are kept.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// What is kept of a pre-image, and how closely.
+#[derive(Clone, Debug)]
 pub(super) struct Packing {
     /// Largest distance between a polyline and its curve, radians.
     pub tolerance: f64,
+    /// Physical limits of every joint.
+    pub physical: Vec<Arc>,
+    /// Keep only what scoring these very limits needs: ranges and the θ₁-image of the box.
+    pub focus: Option<Focus>,
+}
+
+/// The only limits that an atlas will be scored for.
+#[derive(Clone, Debug)]
+pub(super) struct Focus {
+    /// The limits.
+    pub limits: ArtificialLimits,
+    /// The faces of their box, where images of surfaces have their ends.
+    pub faces: Option<Faces>,
 }
 
 /// Packs the samples `range` of `plan` into one block.
@@ -20,69 +35,135 @@ pub(super) struct Packing {
 /// The result depends on the plan and the range alone.
 pub(super) fn build_block(
     source: &mut CurveSource,
-    physical: &[Arc],
+    packing: &mut Packing,
     plan: &SamplePlan,
     range: std::ops::Range<u64>,
-    packing: Packing,
 ) -> BlockBuilder {
-    let joints = source.joints();
-    let mut packer = Packer {
-        block: BlockBuilder::new(joints),
-        line: Polyline::new(joints, packing.tolerance),
-        inner: Box16::new(physical.iter().map(Arc16::nearest).enumerate().skip(1)),
-        ranges: vec![Vec::new(); joints],
-        flat: Vec::new(),
-    };
+    let mut packer = Packer::new(source.joints(), packing);
     for index in range {
         let sample = plan.sample(index);
         packer.block.samples += 1;
         if sample.tool.translation.vector.norm() > plan.region.reach {
             continue;
         }
-        source.solve(&sample.tool, &mut plan.search_stream(index));
+        packer.add(source, packing, plan, index, &sample);
         packer.block.seeds += source.seeds() as u64;
-        packer.pack(source, index, &sample);
     }
     packer.block
 }
 
 struct Packer {
+    joints: usize,
     block: BlockBuilder,
     line: Polyline,
     /// Physical limits of the joints from 2 on. Those of joint 1 depend on β: see `score`.
     inner: Box16,
-    /// Arcs of every joint over the pieces of the current pose.
-    ranges: Vec<Vec<Arc>>,
+    /// The box of the focus, if there is one.
+    focus: Option<Box16>,
+    /// Arcs of every joint over the clipped pieces of the current pose.
+    clipped: Vec<Vec<Arc>>,
+    /// θ₁-image of the focus of the current pose.
+    image: Vec<Arc>,
     flat: Vec<u16>,
+    curves: usize,
 }
 
 impl Packer {
-    fn pack(&mut self, source: &CurveSource, index: u64, sample: &Sample) {
-        for arcs in &mut self.ranges {
-            arcs.clear();
+    fn new(joints: usize, packing: &Packing) -> Packer {
+        let arcs = |arcs: &[Arc]| {
+            let arcs: Vec<_> = arcs.iter().map(Arc16::nearest).collect();
+            Box16::new(arcs.into_iter().enumerate().skip(1))
+        };
+        let focus = packing.focus.as_ref().map(|focus| {
+            let limits = focus.limits.joints().iter();
+            arcs(&limits.map(|limit| limit.arc()).collect::<Vec<_>>())
+        });
+        Packer {
+            joints,
+            block: BlockBuilder::new(joints),
+            line: Polyline::new(joints, packing.tolerance),
+            inner: arcs(&packing.physical),
+            focus,
+            clipped: vec![Vec::new(); joints],
+            image: Vec::new(),
+            flat: Vec::new(),
+            curves: 0,
         }
-        let mut pieces = 0;
-        source.visit(|curve| pieces += self.push_curve(&curve));
-        if pieces == 0 {
+    }
+
+    fn add(
+        &mut self,
+        source: &mut CurveSource,
+        packing: &mut Packing,
+        plan: &SamplePlan,
+        index: u64,
+        sample: &Sample,
+    ) {
+        self.clipped.iter_mut().for_each(Vec::clear);
+        self.image.clear();
+        self.curves = 0;
+        let mut rng = plan.search_stream(index);
+        let free = source.solve(&sample.tool, &mut rng, |curve| {
+            self.push_curve(&curve, true)
+        });
+        if let Some(Focus {
+            faces: Some(faces), ..
+        }) = &mut packing.focus
+        {
+            let found = self.curves;
+            if found > 0 {
+                source.solve_faces(&sample.tool, faces, &mut rng, |curve| {
+                    self.push_curve(&curve, false);
+                });
+            }
+        }
+        if self.curves == 0 {
             return;
         }
-        let ranges: Vec<Vec<Arc16>> = self
-            .ranges
-            .iter()
-            .map(|arcs| arcs16(&AngleSet::from_arcs(arcs.iter().copied())).collect())
-            .collect();
+        if let Some(focus) = &packing.focus {
+            self.push_image(&focus.limits);
+        }
+        let is_clipped = !self.inner.active.is_empty();
+        let ranges = free.iter().enumerate().map(|(joint, set)| {
+            if is_clipped {
+                arcs16(&AngleSet::from_arcs(self.clipped[joint].iter().copied())).collect()
+            } else {
+                arcs16(set).collect()
+            }
+        });
         self.block.finish_pose(
             index as u32,
             sample.stratum,
             sample.weight,
             source.is_sound(),
-            ranges.into_iter(),
+            ranges,
         );
     }
 
-    /// Packs a curve; returns the number of its pieces.
-    fn push_curve(&mut self, curve: &CurveRef) -> usize {
-        let n = curve.joints;
+    /// Packs a curve, or its image in the focus. Curves on faces of the focus are no part of the
+    /// ranges.
+    fn push_curve(&mut self, curve: &CurveRef, counts: bool) {
+        self.flatten(curve);
+        let flat = std::mem::take(&mut self.flat);
+        if self.inner.active.is_empty() {
+            self.curves += 1;
+            self.keep(&flat);
+        } else {
+            for part in parts_inside(&self.inner, &flat, self.joints) {
+                self.curves += 1;
+                if counts {
+                    for (joint, arcs) in self.clipped.iter_mut().enumerate() {
+                        arcs.push(swept(&part, self.joints, joint));
+                    }
+                }
+                self.keep(&part);
+            }
+        }
+        self.flat = flat;
+    }
+
+    /// The curve as a polyline in steps.
+    fn flatten(&mut self, curve: &CurveRef) {
         self.line.begin(curve.point(0));
         for index in 0..curve.vertices() - 1 {
             let (length, turn) = curve.bend(index);
@@ -94,44 +175,57 @@ impl Packer {
             self.line.push(curve.point(index + 1));
         }
         self.flat.clear();
-        self.flat
-            .extend(self.line.finish().iter().map(|&angle| quantise(angle)));
-        if self.inner.active.is_empty() {
-            for (joint, arcs) in self.ranges.iter_mut().enumerate() {
-                arcs.push(curve.range(joint));
-            }
-            self.block.push_piece(self.flat.iter().copied());
-            return 1;
-        }
-        self.push_clipped(n)
+        let angles = self.line.finish().iter();
+        self.flat.extend(angles.map(|&angle| quantise(angle)));
     }
 
-    /// Packs the parts of the current polyline inside the physical limits.
-    fn push_clipped(&mut self, n: usize) -> usize {
-        let mut parts: Vec<Vec<u16>> = Vec::new();
-        let mut ended = (usize::MAX, 0.0);
-        self.inner.walk(&self.flat, n, |index, part, from, to| {
-            let at = |u: f64, joint: usize| {
-                let step = f64::from(to[joint].wrapping_sub(from[joint]) as i16);
-                from[joint].wrapping_add((u * step).round() as i32 as u16)
-            };
-            let continues = part[0] == 0.0 && ended.1 == 1.0 && ended.0 + 1 == index;
-            if !continues {
-                parts.push((0..n).map(|joint| at(part[0], joint)).collect());
+    fn keep(&mut self, piece: &[u16]) {
+        match &self.focus {
+            None => self.block.push_piece(piece.iter().copied()),
+            Some(focus) => {
+                let runs = runs_of_theta_1(focus, piece, self.joints);
+                let arcs = runs.into_iter().map(|[a, b]| Arc::from_interval(a, b));
+                self.image.extend(arcs);
             }
-            if let Some(current) = parts.last_mut() {
-                current.extend((0..n).map(|joint| at(part[1], joint)));
-            }
-            ended = (index, part[1]);
-        });
-        for part in &parts {
-            for (joint, arcs) in self.ranges.iter_mut().enumerate() {
-                arcs.push(swept(part, n, joint));
-            }
-            self.block.push_piece(part.iter().copied());
         }
-        parts.len()
     }
+
+    /// Stores the image as polylines in the middle of the box along which only θ₁ changes.
+    fn push_image(&mut self, limits: &ArtificialLimits) {
+        let rest: Vec<u16> = limits.joints()[1..]
+            .iter()
+            .map(|limit| quantise(limit.arc().centre()))
+            .collect();
+        for arc in AngleSet::from_arcs(self.image.drain(..)).arcs() {
+            let edges = (arc.width() / 2.0).ceil().max(1.0) as usize;
+            let vertex = |k: usize| {
+                let theta = arc.start() + arc.width() * k as f64 / edges as f64;
+                std::iter::once(quantise(theta)).chain(rest.iter().copied())
+            };
+            self.block.push_piece((0..=edges).flat_map(vertex));
+        }
+    }
+}
+
+/// The parts of a polyline inside a box.
+fn parts_inside(limits: &Box16, piece: &[u16], n: usize) -> Vec<Vec<u16>> {
+    let mut parts: Vec<Vec<u16>> = Vec::new();
+    let mut ended = (usize::MAX, 0.0);
+    limits.walk(piece, n, |index, part, from, to| {
+        let at = |u: f64, joint: usize| {
+            let step = f64::from(to[joint].wrapping_sub(from[joint]) as i16);
+            from[joint].wrapping_add((u * step).round() as i32 as u16)
+        };
+        let continues = part[0] == 0.0 && ended.1 == 1.0 && ended.0.wrapping_add(1) == index;
+        if !continues {
+            parts.push((0..n).map(|joint| at(part[0], joint)).collect());
+        }
+        if let Some(current) = parts.last_mut() {
+            current.extend((0..n).map(|joint| at(part[1], joint)));
+        }
+        ended = (index, part[1]);
+    });
+    parts
 }
 
 /// The arc that a joint sweeps along a polyline.

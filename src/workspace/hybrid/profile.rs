@@ -33,6 +33,9 @@ struct Family {
     growth: Growth,
     /// The end or middle that stays, steps.
     anchor: u16,
+    /// Half the distance between slices along the joint, steps. The joint is constant on a
+    /// slice, so the width of entry stays linear.
+    slab: f64,
     /// Widths in steps, ascending.
     widths: Vec<i32>,
 }
@@ -48,15 +51,15 @@ impl Atlas {
         growth: Growth,
         widths: &[f64],
     ) -> Vec<f64> {
-        let fixed = Limits16::new(limits, failures, Rule::Definition);
+        let fixed = self.limits(limits, failures, Rule::Definition);
         let parts: Vec<Vec<f64>> = if joint == 0 {
             self.views()
                 .map(|view| first_joint(&view, &fixed, widths))
                 .collect()
         } else {
-            let family = Family::new(limits, joint, growth, widths);
-            let others = fixed.arcs.iter().copied().enumerate().skip(1);
-            let rest = Box16::new(others.filter(|(other, _)| *other != joint));
+            let family = Family::new(limits, joint, growth, widths, self.slabs[joint]);
+            let mut rest = fixed.rest.clone();
+            rest.active.retain(|(other, _)| *other != joint);
             self.views()
                 .map(|view| other_joint(&view, &fixed, &rest, &family))
                 .collect()
@@ -72,7 +75,13 @@ impl Atlas {
 }
 
 impl Family {
-    fn new(limits: &ArtificialLimits, joint: usize, growth: Growth, widths: &[f64]) -> Family {
+    fn new(
+        limits: &ArtificialLimits,
+        joint: usize,
+        growth: Growth,
+        widths: &[f64],
+        slab: f64,
+    ) -> Family {
         let limit = limits.joints()[joint];
         let anchor = match growth {
             Growth::Lower => limit.upper,
@@ -83,14 +92,20 @@ impl Family {
             joint,
             growth,
             anchor: super::turn16::quantise(anchor),
-            widths: widths.iter().map(|width| (width / STEP).round() as i32).collect(),
+            slab: slab / STEP,
+            widths: widths
+                .iter()
+                .map(|width| (width / STEP).round() as i32)
+                .collect(),
         }
     }
 
     /// Number of widths up to and with the largest at which the limits still lie in `range`.
     fn fitting(&self, range: &[Arc16]) -> usize {
         let largest = range.iter().filter_map(|arc| self.room(*arc)).max();
-        largest.map_or(0, |room| self.widths.partition_point(|&width| width <= room))
+        largest.map_or(0, |room| {
+            self.widths.partition_point(|&width| width <= room)
+        })
     }
 
     /// The largest width at which the limits lie in `arc`.
@@ -105,6 +120,20 @@ impl Family {
             Growth::Upper => above,
             Growth::Both => 2 * below.min(above),
         })
+    }
+
+    /// The width at which a slice enters that would enter at `width` if it had no thickness.
+    fn thick(&self, width: f64) -> f64 {
+        let sides = if self.growth == Growth::Both {
+            2.0
+        } else {
+            1.0
+        };
+        if self.slab > 0.0 {
+            (width - sides * self.slab).max(0.0)
+        } else {
+            width
+        }
     }
 
     /// Calls `take` with pieces of an edge part on which the width of entry is linear: parameters
@@ -124,7 +153,11 @@ impl Family {
         };
         let x = |u: f64| f64::from(start) + u * slope;
         // The entry width has kinks where x passes a multiple of a (half) turn.
-        let kink = if self.growth == Growth::Both { 32_768.0 } else { 65_536.0 };
+        let kink = if self.growth == Growth::Both {
+            32_768.0
+        } else {
+            65_536.0
+        };
         let (mut u, end) = (part[0], part[1]);
         loop {
             let turn = (x(0.5 * (u + end.min(u + 1e-3))) / kink).floor();
@@ -145,9 +178,10 @@ impl Family {
                     y
                 };
                 match self.growth {
-                    Growth::Both if turn.rem_euclid(2.0) == 0.0 => 2.0 * y,
-                    Growth::Both => 2.0 * (kink - y),
-                    _ => y,
+                    Growth::Both if turn.rem_euclid(2.0) == 0.0 => self.thick(2.0 * y),
+                    Growth::Both => self.thick(2.0 * (kink - y)),
+                    _ if self.slab > 0.0 && y > kink - self.slab => 0.0,
+                    _ => self.thick(y),
                 }
             };
             take([u, v], [width(u), width(v)]);
@@ -204,7 +238,9 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
         }
         if fixed.is_free_of_joint_1() {
             let entry = first_entry(view, pose, rest, family);
-            let on = family.widths.partition_point(|&width| (width as f64) < entry);
+            let on = family
+                .widths
+                .partition_point(|&width| (width as f64) < entry);
             if on < fits {
                 steps[on] += pose.weight * TAU;
                 steps[fits] -= pose.weight * TAU;

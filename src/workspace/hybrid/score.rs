@@ -45,7 +45,14 @@ pub(super) struct Limits16 {
 }
 
 impl Limits16 {
-    pub fn new(limits: &ArtificialLimits, failures: &FailureSet, rule: Rule) -> Limits16 {
+    /// `slabs` is half the distance between slices along every joint: a slice stands for that
+    /// much to either side, so the box is widened by it.
+    pub fn new(
+        limits: &ArtificialLimits,
+        failures: &FailureSet,
+        rule: Rule,
+        slabs: &[f64],
+    ) -> Limits16 {
         let arcs: Vec<Arc16> = limits
             .joints()
             .iter()
@@ -55,7 +62,11 @@ impl Limits16 {
             .joints()
             .first()
             .map_or(Arc::FULL, |limit| limit.arc());
-        let rest = Box16::new(arcs.iter().copied().enumerate().skip(1));
+        let widened = limits.joints().iter().zip(slabs).map(|(limit, slab)| {
+            let arc = limit.arc();
+            Arc16::nearest(&Arc::new(arc.start() - slab, arc.width() + 2.0 * slab))
+        });
+        let rest = Box16::new(widened.enumerate().skip(1));
         Limits16 {
             prone: (1..=arcs.len())
                 .map(|joint| failures.contains(joint))
@@ -194,7 +205,11 @@ fn fits_somewhere(limit: Arc16, range: &[Arc16]) -> bool {
 
 /// Intervals of θ₁, radians, over the connected parts of `piece` inside the box; unwrapped within
 /// each part.
-fn runs_of_theta_1(limits: &Box16, piece: &[u16], joints: usize) -> SmallVec<[[f64; 2]; 4]> {
+pub(super) fn runs_of_theta_1(
+    limits: &Box16,
+    piece: &[u16],
+    joints: usize,
+) -> SmallVec<[[f64; 2]; 4]> {
     let mut runs: SmallVec<[[f64; 2]; 4]> = SmallVec::new();
     // Edge, parameter and unwrapped θ₁ (steps) at which the last part ended.
     let mut ended = (usize::MAX, 0.0, 0);

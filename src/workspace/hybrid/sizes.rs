@@ -28,7 +28,7 @@ type Sums = Vec<[f64; 2]>;
 impl Atlas {
     /// S_F for `limits`: the score of a search.
     pub fn fault_tolerant_size(&self, limits: &ArtificialLimits, failures: &FailureSet) -> f64 {
-        let limits = Limits16::new(limits, failures, Rule::Definition);
+        let limits = self.limits(limits, failures, Rule::Definition);
         let shares: Vec<f64> = self
             .views()
             .map(|view| {
@@ -48,7 +48,7 @@ impl Atlas {
         failures: &FailureSet,
         rule: Rule,
     ) -> WorkspaceSizes {
-        let limits = Limits16::new(limits, failures, rule);
+        let limits = self.limits(limits, failures, rule);
         let strata = self.plan().strata() as usize;
         let measures = self.joints + 3;
         let blocks: Vec<Vec<(usize, Sums)>> = self

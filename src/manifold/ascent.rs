@@ -1,0 +1,132 @@
+//! Walks on a pre-image of two or more dimensions to where one joint's angle is stationary
+//! [S4 eq. 18].
+
+use crate::design::TaskSpace;
+use crate::kinematics::{Chain, Goal, Kernel, damped_step, dot};
+
+/// Largest slope of the joint's angle at which the walk ends: the angle is then within about
+/// its square, divided by the curvature, of the extremum.
+const LEVEL: f64 = 0.02;
+/// Most steps of a walk.
+const MOST_STEPS: usize = 60;
+/// Damping of corrections, far below the square of any regular singular value.
+const DAMPING: f64 = 1e-10;
+
+/// Kernels of all joints, for degrees of redundancy 2 and 3.
+#[derive(Clone, Debug)]
+pub(super) enum Ascent {
+    Two4(Kernel<4, 2>),
+    Two5(Kernel<5, 2>),
+    Three5(Kernel<5, 3>),
+    Three6(Kernel<6, 3>),
+    Six8(Kernel<8, 6>),
+    Six9(Kernel<9, 6>),
+}
+
+impl Ascent {
+    pub fn new(chain: &Chain, task: TaskSpace) -> Option<Ascent> {
+        Some(match (task.dimension(), chain.len()) {
+            (2, 4) => Ascent::Two4(Kernel::new(chain, task)?),
+            (2, 5) => Ascent::Two5(Kernel::new(chain, task)?),
+            (3, 5) => Ascent::Three5(Kernel::new(chain, task)?),
+            (3, 6) => Ascent::Three6(Kernel::new(chain, task)?),
+            (6, 8) => Ascent::Six8(Kernel::new(chain, task)?),
+            (6, 9) => Ascent::Six9(Kernel::new(chain, task)?),
+            _ => return None,
+        })
+    }
+
+    /// The value of `joint` (from 0) at the end of a walk from `start` that raises (`sign` = 1)
+    /// or lowers (−1) it.
+    pub fn extremum(&self, goal: &Goal<f64>, start: &[f64], joint: usize, sign: f64) -> f64 {
+        let value = match self {
+            Ascent::Two4(kernel) => walk(kernel, goal, start, joint, sign),
+            Ascent::Two5(kernel) => walk(kernel, goal, start, joint, sign),
+            Ascent::Three5(kernel) => walk(kernel, goal, start, joint, sign),
+            Ascent::Three6(kernel) => walk(kernel, goal, start, joint, sign),
+            Ascent::Six8(kernel) => walk(kernel, goal, start, joint, sign),
+            Ascent::Six9(kernel) => walk(kernel, goal, start, joint, sign),
+        };
+        value.unwrap_or(start[joint])
+    }
+}
+
+fn walk<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    start: &[f64],
+    joint: usize,
+    sign: f64,
+) -> Option<f64> {
+    let start: [f64; N] = start.try_into().ok()?;
+    let mut point = settle(kernel, goal, start)?;
+    let mut step: f64 = 0.1;
+    for _ in 0..MOST_STEPS {
+        let slope = uphill(kernel, goal, &point, joint, sign);
+        let norm = dot(&slope, &slope).sqrt();
+        // More than a turn away from the start the joint's range is full anyway.
+        if norm < LEVEL || (point[joint] - start[joint]).abs() > std::f64::consts::TAU {
+            break;
+        }
+        let guess: [f64; N] = std::array::from_fn(|k| point[k] + step * slope[k] / norm);
+        let next = settle(kernel, goal, guess);
+        match next.filter(|next| sign * (next[joint] - point[joint]) > 0.0) {
+            Some(next) => {
+                // Ahead of the extremum the slope changes little; past it, it turns round.
+                let ahead = uphill(kernel, goal, &next, joint, sign);
+                let falls = dot(&ahead, &slope) < 0.5 * norm * norm;
+                step = if falls {
+                    0.5 * step
+                } else {
+                    (1.6 * step).min(0.4)
+                };
+                point = next;
+            }
+            None => step *= 0.3,
+        }
+        if step < 1e-4 {
+            break;
+        }
+    }
+    Some(point[joint])
+}
+
+/// The projection of ± the joint's axis onto the null space of J.
+fn uphill<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    point: &[f64; N],
+    joint: usize,
+    sign: f64,
+) -> [f64; N] {
+    let mut linear = kernel.linearise(point, goal);
+    // −J⁺ (J e) plus e is the part of e that J does not see.
+    linear.residual = std::array::from_fn(|row| sign * linear.jacobian[row][joint]);
+    let mut slope = damped_step(&linear, DAMPING);
+    slope[joint] += sign;
+    slope
+}
+
+/// Newton steps onto the pre-image; `None` if they lead away.
+fn settle<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    guess: [f64; N],
+) -> Option<[f64; N]> {
+    let mut point = guess;
+    for _ in 0..6 {
+        let step = damped_step(&kernel.linearise(&point, goal), DAMPING);
+        let size = dot(&step, &step);
+        // The negated comparison also refuses NaN.
+        if !(size < 0.25) {
+            return None;
+        }
+        for k in 0..N {
+            point[k] += step[k];
+        }
+        if size < 1e-12 {
+            return Some(point);
+        }
+    }
+    None
+}
