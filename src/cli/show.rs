@@ -2,7 +2,7 @@
 
 use super::{Ending, output};
 use crate::design::{Convention, Geometry, Joint, JointKind, Robot, TaskSpace, read_design};
-use crate::kinematics::reach;
+use crate::kinematics::reach_bound;
 use crate::report::{RobotFigure, figure_png, figure_svg, write_bytes};
 use crate::workspace::planar::PlanarPosition;
 use std::fmt::Write;
@@ -61,7 +61,7 @@ fn describe(robot: &Robot) -> String {
         let label = format!("degree of redundancy, {task}:");
         let _ = writeln!(text, "{label:<40} {degree}");
     }
-    let _ = match reach(robot) {
+    let _ = match reach_bound(robot) {
         reach if reach.is_finite() => writeln!(text, "{:<40} {reach} m", "reach at most:"),
         _ => writeln!(text, "{:<40} not limited", "reach at most:"),
     };
@@ -77,6 +77,7 @@ fn joint_table(robot: &Robot) -> String {
     match &robot.geometry {
         Geometry::Planar { lengths } => link_table(robot, lengths),
         Geometry::Rows { convention, joints } => row_table(robot, *convention, joints),
+        Geometry::Frames(_) => String::new(),
     }
 }
 
