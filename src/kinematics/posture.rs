@@ -13,6 +13,9 @@ const CANDIDATES: usize = 4000;
 pub struct JointPlace {
     /// The frame in which the joint moves: about or along its z axis.
     pub frame: Isometry3<f64>,
+    /// The point of the axis that is nearest to the foot before (or the base): there the link
+    /// comes in, metres.
+    pub entry: Vector3<f64>,
     /// The point of the axis from which the link leaves it at a right angle, metres. A prismatic
     /// joint carries it along.
     pub foot: Vector3<f64>,
@@ -20,7 +23,7 @@ pub struct JointPlace {
 
 /// The places of all joints, base first, in the base frame.
 ///
-/// Straight lines over the base, each joint's origin and foot, and the tool are the robot's
+/// Straight lines over the base, each joint's entry and foot, and the tool are the robot's
 /// skeleton. `theta` holds the n joint variables; missing ones count as 0.
 pub fn joint_places(robot: &Robot, theta: &[f64]) -> Vec<JointPlace> {
     let kinds: Vec<JointKind> = (0..robot.joints()).map(|j| robot.joint_kind(j)).collect();
@@ -35,12 +38,18 @@ fn places(
 ) -> (Vec<JointPlace>, Isometry3<f64>) {
     let mut frame = fixed.first().copied().unwrap_or_default();
     let mut places = Vec::with_capacity(kinds.len());
+    let mut before = Vector3::zeros();
     for (joint, (kind, link)) in kinds.iter().zip(fixed.iter().skip(1)).enumerate() {
         let moved = frame * joint_motion(*kind, theta.get(joint).copied().unwrap_or(0.0));
         let along = moved.rotation * Vector3::new(0.0, 0.0, link.translation.z);
+        let axis = frame.rotation * Vector3::z();
+        let origin = frame.translation.vector;
+        let entry = origin + (before - origin).dot(&axis) * axis;
+        before = moved.translation.vector + along;
         places.push(JointPlace {
             frame,
-            foot: moved.translation.vector + along,
+            entry,
+            foot: before,
         });
         frame = moved * link;
     }
@@ -69,13 +78,14 @@ fn golden(dimensions: usize) -> f64 {
 pub fn display_posture(robot: &Robot) -> Vec<f64> {
     let fixed = fixed_transforms(robot);
     let kinds: Vec<JointKind> = (0..robot.joints()).map(|j| robot.joint_kind(j)).collect();
-    let size: f64 = fixed.iter().map(|c| c.translation.vector.norm()).sum();
-    let ranges = ranges(robot, size.max(1e-9));
+    let lengths = fixed.iter().map(|c| c.translation.vector.norm());
+    let size = lengths.sum::<f64>().max(1e-9);
+    let ranges = ranges(robot, size);
     let mut best = (f64::NEG_INFINITY, Vec::new());
     for number in 0..CANDIDATES {
         let theta = spread(number, &ranges);
         let (places, tool) = places(&fixed, &kinds, &theta);
-        let score = clarity(&skeleton(&places, &tool), size.max(1e-9));
+        let score = clarity(&skeleton(&places, &tool, 0.03 * size), size);
         if score > best.0 || best.1.is_empty() {
             best = (score, theta);
         }
@@ -100,33 +110,50 @@ fn ranges(robot: &Robot, size: f64) -> Vec<[f64; 2]> {
     (0..robot.joints()).map(range).collect()
 }
 
-/// The corners of the skeleton, without repeated ones.
-fn skeleton(places: &[JointPlace], tool: &Isometry3<f64>) -> Vec<Vector3<f64>> {
-    let ends = places
-        .iter()
-        .flat_map(|p| [p.frame.translation.vector, p.foot]);
-    let mut points: Vec<Vector3<f64>> = ends.chain([tool.translation.vector]).collect();
-    points.dedup_by(|a, b| (*a - *b).norm() < 1e-9);
+/// The corners of the skeleton; of corners nearer to each other than `apart` metres the first.
+fn skeleton(places: &[JointPlace], tool: &Isometry3<f64>, apart: f64) -> Vec<Vector3<f64>> {
+    let ends = places.iter().flat_map(|p| [p.entry, p.foot]);
+    let mut points = vec![Vector3::zeros()];
+    points.extend(ends.chain([tool.translation.vector]));
+    points.dedup_by(|a, b| (*a - *b).norm() < apart);
     points
 }
 
-/// How well the corners of a skeleton can be told apart: sums of logarithms, so that the worst
-/// pair and the flattest corner count most.
+/// How well the corners of a skeleton can be told apart: means of logarithms, so that near pairs
+/// and flat corners count most.
 fn clarity(points: &[Vector3<f64>], size: f64) -> f64 {
-    let mut score = 0.0;
+    let (mut apart, mut below, mut bent) = (Mean::default(), 0.0, Mean::default());
     for (index, a) in points.iter().enumerate() {
         for b in &points[..index] {
-            score += ((a - b).norm_squared() / (size * size) + 1e-3).ln();
+            apart.add(((a - b).norm_squared() / (size * size) + 1e-3).ln());
         }
         // Below the base is the floor.
-        score -= 40.0 * (-a.z / size).max(0.0);
+        below += (-a.z / size).max(0.0);
     }
     for corner in points.windows(3) {
         let (before, after) = (corner[1] - corner[0], corner[2] - corner[1]);
         let sine = before.cross(&after).norm() / (before.norm() * after.norm()).max(1e-12);
         // Links that fold back onto each other hide each other.
-        let folded = if before.dot(&after) < 0.0 { 0.5 } else { 1.0 };
-        score += 2.0 * (folded * sine + 0.05).ln();
+        let folded = if before.dot(&after) < 0.0 { 0.2 } else { 1.0 };
+        bent.add((folded * sine + 0.05).ln());
     }
-    score
+    2.0 * apart.value() + 1.5 * bent.value() - 10.0 * below
+}
+
+/// A mean of numbers; 0 without any.
+#[derive(Default)]
+struct Mean {
+    sum: f64,
+    count: usize,
+}
+
+impl Mean {
+    fn add(&mut self, value: f64) {
+        self.sum += value;
+        self.count += 1;
+    }
+
+    fn value(&self) -> f64 {
+        self.sum / self.count.max(1) as f64
+    }
 }

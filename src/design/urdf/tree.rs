@@ -117,11 +117,18 @@ impl<'a> Tree<'a> {
         let roots: Vec<usize> = (0..self.links.len()).filter(roots).collect();
         match roots[..] {
             [root] => Ok(root),
-            [] if self.links.is_empty() => Err(self.ambiguous("no link at all", "base", "links")),
-            [] => Err(self.ambiguous("a closed loop of joints without a root", "base", "a tree")),
+            [] if self.links.is_empty() => {
+                Err(self.ambiguous("no link at all", "base", "links", None))
+            }
+            [] => Err(self.ambiguous(
+                "a closed loop of joints without a root",
+                "base",
+                "a tree",
+                None,
+            )),
             _ => {
                 let found = format!("{} root links: {}", roots.len(), self.list(&roots));
-                Err(self.ambiguous(&found, "base", "one root link"))
+                Err(self.ambiguous(&found, "base", "one root link", roots.first()))
             }
         }
     }
@@ -148,20 +155,32 @@ impl<'a> Tree<'a> {
         leaves.sort_unstable();
         match leaves[..] {
             [leaf] => Ok(leaf),
-            [] => Err(self.ambiguous("a closed loop of joints without an end", "tip", "a tree")),
+            [] => Err(self.ambiguous(
+                "a closed loop of joints without an end",
+                "tip",
+                "a tree",
+                None,
+            )),
             _ => {
                 let found = format!("{} ends: {}", leaves.len(), self.list(&leaves));
-                Err(self.ambiguous(&found, "tip", "one link without a child"))
+                Err(self.ambiguous(&found, "tip", "one link without a child", leaves.first()))
             }
         }
     }
 
-    fn ambiguous(&self, found: &str, key: &'static str, expected: &str) -> Fault {
+    fn ambiguous(
+        &self,
+        found: &str,
+        key: &'static str,
+        expected: &str,
+        example: Option<&usize>,
+    ) -> Fault {
+        let example = example.map_or("link8", |&link| self.links[link]);
         let problem = Problem {
             message: format!("the URDF file `{}` does not tell the {key} link", self.file),
             found: found.to_owned(),
             expected: expected.to_owned(),
-            help: format!("name the link, e.g. `{key} = \"link8\"`"),
+            help: format!("name the link, e.g. `{key} = \"{example}\"`"),
         };
         Fault::Key("urdf", problem)
     }
