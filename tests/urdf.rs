@@ -5,6 +5,7 @@ use faultspace::diagnostic::{InputError, Source};
 use faultspace::kinematics::{joint_frames, tool_frame};
 use faultspace::study::Design;
 use nalgebra::{Isometry3, Translation3, Vector3};
+use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::fs;
 use std::path::PathBuf;
@@ -322,4 +323,35 @@ fn the_hash_covers_both_files() {
     assert_eq!(first, hash(ARM, robot));
     assert_ne!(first, hash(&format!("{ARM}\n"), robot));
     assert_ne!(first, hash(ARM, &format!("{robot}\n")));
+}
+
+/// A joint of a robot cut into pieces and put together anew.
+fn shuffled(cuts: &[usize], odd: &str) -> String {
+    let mut text = ARM.replace("</robot>", FINGERS);
+    for pair in cuts.chunks_exact(2) {
+        let place = |at: usize| text.floor_char_boundary(at % (text.len() + 1));
+        let (from, to) = (place(pair[0]), place(pair[0] + pair[1] % 12));
+        let end = to.max(from);
+        text.replace_range(from..end, odd);
+    }
+    text
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 1500, failure_persistence: None, ..Default::default() })]
+
+    #[test]
+    fn damaged_files_never_panic(
+        cuts in prop::collection::vec(0..4000usize, 2..6),
+        odd in prop_oneof![Just(""), Just("<"), Just("\""), Just("&#0;"), Just("nan"), Just("fixed"), Just("x:y"), Just("<joint/>"), Just("é")],
+    ) {
+        let text = shuffled(&cuts, odd);
+        for keys in ["tip = 'flange'", ""] {
+            if let Err(error) = read_with(&text, keys) {
+                let message = error.render(false);
+                prop_assert!(message.contains("arm.urdf") && message.contains("help"));
+                prop_assert!(!message.contains("does not understand"), "{}", text);
+            }
+        }
+    }
 }

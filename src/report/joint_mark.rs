@@ -1,8 +1,9 @@
 //! A joint in space: a drum about its axis if it turns, a box along its axis if it slides.
 
 use super::canvas::Point;
-use super::projection::{Shape, Space, hull};
+use super::projection::Space;
 use super::robot_3d::JointMark;
+use super::scene::{Shape, hull};
 use super::style::{GREY, INK, ORANGE, SKY};
 use nalgebra::Vector3;
 use plotters::style::RGBAColor;

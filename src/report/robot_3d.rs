@@ -5,7 +5,10 @@ use super::figure::Figure;
 use super::free_place::FreePlaces;
 use super::joint_mark::{self, Mark};
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
-use super::projection::{Scene, Shape, Space, View, centred};
+use super::link_rod::{BODY, BODY_WIDTH, RIM_WIDTH, arrow, rod};
+use super::projection::{Space, centred};
+use super::robot_view::{ARROW, best_view, bounds, sides};
+use super::scene::{Scene, Shape};
 use super::style::{
     BLUE, COLUMN, GREEN, GREY, INK, MARGIN, ORANGE, SKY, SMALL, TITLE, VERMILLION, WHITE,
     translucent,
@@ -39,20 +42,12 @@ pub struct SpatialRobotFigure {
     pub tool: Isometry3<f64>,
 }
 
-/// From above the horizon, radians.
-const ELEVATION: f64 = 0.42;
 /// Height of the picture, at most, in its width.
 const TALLEST: f64 = 1.05;
 /// Radius of a joint in the robot's size.
 const RADIUS: f64 = 0.038;
-/// Widths of the links' bodies and rims, points.
-const LINK: f64 = 2.6;
-const RIM: f64 = 3.6;
-/// Length of a frame's arrows in radii of a joint.
-const ARROW: f64 = 3.2;
 /// Colours of the arrows along x, y and z.
 const AXES: [RGBAColor; 3] = [VERMILLION, GREEN, BLUE];
-const BODY: RGBAColor = RGBAColor(0xc4, 0xc4, 0xc4, 1.0);
 const SHADOW: RGBAColor = RGBAColor(0xcc, 0xcc, 0xcc, 1.0);
 
 /// The robot placed on the sheet.
@@ -79,7 +74,7 @@ impl SpatialRobotFigure {
         let [low, high] = bounds(points.iter().map(|point| (*point, 0.0)));
         let radius = RADIUS * (high - low).max().max(1e-6);
         let marks = joint_mark::place(&self.joints, radius);
-        let view = best_view(&marks);
+        let view = best_view(&points, &marks, radius);
         let frames = [Isometry3::identity(), self.tool];
         let sides = sides(&points, &marks, &frames, radius);
         let width = COLUMN - 2.0 * MARGIN;
@@ -157,7 +152,7 @@ impl Drawing {
     fn draw_shadow(&self, canvas: &mut Canvas) {
         let floor = |p: &Vector3<f64>| self.space.at(&self.space.on_floor(p));
         let path: Vec<Point> = self.links.iter().flatten().map(floor).collect();
-        canvas.stroke(&path, RIM, SHADOW);
+        canvas.stroke(&path, RIM_WIDTH, SHADOW);
         for frame in &self.frames {
             let at = frame.translation.vector;
             let line = [self.space.at(&at), floor(&at)];
@@ -183,8 +178,8 @@ impl Drawing {
         for corner in corners.iter().filter(|corner| !self.is_inside(corner)) {
             let at = self.space.at(corner);
             let discs = vec![
-                Shape::Disc(at, 0.5 * RIM, INK),
-                Shape::Disc(at, 0.5 * LINK, BODY),
+                Shape::Disc(at, 0.5 * RIM_WIDTH, INK),
+                Shape::Disc(at, 0.5 * BODY_WIDTH, BODY),
             ];
             scene.add(self.space.view.nearness(corner), discs);
         }
@@ -307,123 +302,4 @@ impl Figure for SpatialRobotFigure {
         }
         table
     }
-}
-
-/// The least and the largest coordinates of points with margins around them.
-fn bounds(points: impl Iterator<Item = (Vector3<f64>, f64)>) -> [Vector3<f64>; 2] {
-    let start = Vector3::repeat(f64::INFINITY);
-    points.fold([start, -start], |[low, high], (point, margin)| {
-        [
-            low.inf(&point.add_scalar(-margin)),
-            high.sup(&point.add_scalar(margin)),
-        ]
-    })
-}
-
-/// Sides of a box around everything; none so short that its ticks run together.
-fn sides(
-    points: &[Vector3<f64>],
-    marks: &[Mark],
-    frames: &[Isometry3<f64>],
-    radius: f64,
-) -> [[f64; 3]; 2] {
-    let ends = marks
-        .iter()
-        .flat_map(|mark| [mark.end(-1.0), mark.end(1.0)]);
-    let tip = |frame: &Isometry3<f64>, axis| {
-        frame.translation.vector + frame.rotation * Vector3::ith(axis, ARROW * radius)
-    };
-    let tips = frames
-        .iter()
-        .flat_map(|frame| [0, 1, 2].map(|axis| tip(frame, axis)));
-    let all = points
-        .iter()
-        .copied()
-        .chain(ends)
-        .map(|point| (point, 1.2 * radius));
-    let [mut low, mut high] = bounds(all.chain(tips.map(|tip| (tip, 0.3 * radius))));
-    let least = 0.5 * (high - low).max();
-    for axis in 0..3 {
-        let missing = (least - (high[axis] - low[axis])).max(0.0);
-        // A robot stands on its floor: room is added above.
-        let below = if axis == 2 { 0.0 } else { 0.5 * missing };
-        low[axis] -= below;
-        high[axis] += missing - below;
-    }
-    [low.into(), high.into()]
-}
-
-/// The view in which the joints are farthest apart on the picture.
-fn best_view(marks: &[Mark]) -> View {
-    let mut best = (f64::NEG_INFINITY, View::new(-0.9, ELEVATION));
-    // The viewer stands before the x axis or the y axis, so that x or y runs to the right.
-    for degrees in (-70..=70)
-        .step_by(5)
-        .filter(|d| (20..=70).contains(&i32::abs(*d)))
-    {
-        let azimuth = f64::from(degrees).to_radians();
-        let view = View::new(azimuth, ELEVATION);
-        let flat: Vec<Point> = marks.iter().map(|mark| view.flat(&mark.centre)).collect();
-        let mut score = 0.0;
-        for (index, a) in flat.iter().enumerate() {
-            for b in &flat[..index] {
-                let radius = marks[index].radius;
-                let distance = (a[0] - b[0]).hypot(a[1] - b[1]) / radius;
-                score += (distance * distance + 0.1).ln();
-            }
-        }
-        if score > best.0 {
-            best = (score, view);
-        }
-    }
-    best.1
-}
-
-/// A piece of a link: its body between two lines.
-fn rod(from: Point, to: Point) -> Vec<Shape> {
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let length = along[0].hypot(along[1]);
-    if length < 1e-9 {
-        return Vec::new();
-    }
-    let unit = along.map(|c| c / length);
-    let side = |p: Point, across: f64, ahead: f64| {
-        [
-            p[0] - across * unit[1] + ahead * unit[0],
-            p[1] + across * unit[0] + ahead * unit[1],
-        ]
-    };
-    // Pieces overlap a little, so that no seam shows.
-    let half = 0.5 * LINK;
-    let body = vec![
-        side(from, half, -0.15),
-        side(to, half, 0.15),
-        side(to, -half, 0.15),
-        side(from, -half, -0.15),
-    ];
-    let rim = 0.5 * (RIM - LINK);
-    let line = |across: f64| {
-        let ends = vec![side(from, across, 0.0), side(to, across, 0.0)];
-        Shape::Line(ends, rim, INK)
-    };
-    let edge = half + 0.5 * rim;
-    vec![Shape::Area(body, BODY), line(edge), line(-edge)]
-}
-
-fn arrow(line: [Point; 2], colour: RGBAColor) -> Vec<Shape> {
-    let [from, to] = line;
-    let along = [to[0] - from[0], to[1] - from[1]];
-    let length = along[0].hypot(along[1]);
-    let head = 3.6f64.min(length);
-    let unit = along.map(|c| c / length.max(1e-9));
-    let neck = [to[0] - head * unit[0], to[1] - head * unit[1]];
-    let wing = |side: f64| {
-        let across = 0.42 * head * side;
-        [neck[0] - across * unit[1], neck[1] + across * unit[0]]
-    };
-    vec![
-        Shape::Line(vec![from, neck], 1.1, colour),
-        Shape::Area(vec![to, wing(1.0), wing(-1.0)], colour),
-        Shape::Disc(from, 0.9, colour),
-    ]
 }
