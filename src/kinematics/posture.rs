@@ -134,10 +134,10 @@ fn clarity(points: &[Vector3<f64>], size: f64) -> f64 {
         let (before, after) = (corner[1] - corner[0], corner[2] - corner[1]);
         let sine = before.cross(&after).norm() / (before.norm() * after.norm()).max(1e-12);
         // Links that fold back onto each other hide each other.
-        let folded = if before.dot(&after) < 0.0 { 0.2 } else { 1.0 };
+        let folded = if before.dot(&after) < 0.0 { 0.4 } else { 1.0 };
         bent.add((folded * sine + 0.05).ln());
     }
-    2.0 * apart.value() + 1.5 * bent.value() - 10.0 * below
+    apart.value() + 1.5 * bent.value() - 10.0 * below
 }
 
 /// A mean of numbers; 0 without any.

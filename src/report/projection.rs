@@ -222,6 +222,13 @@ impl Space {
         self.at(&point)
     }
 
+    /// Whether a label of the y axis would meet one of the x axis.
+    fn is_at_front_corner(&self, foot: Point) -> bool {
+        let far = self.far();
+        let corner = self.at(&self.corner([!far[0], !far[1], false]));
+        (foot[0] - corner[0]).hypot(foot[1] - corner[1]) < 8.0
+    }
+
     /// Labels of the ticks of an axis and, farther out, its title.
     fn texts(&self, axis: usize) -> Vec<Text> {
         let ends = self.axis_edges()[axis].map(|end| self.at(&end));
@@ -234,6 +241,9 @@ impl Space {
             let half = [0.5 * Label::new(&tick.label, SMALL).width(), 0.5 * SMALL];
             widest = widest.max(2.0 * reach(half));
             let foot = self.on_edge(axis, tick.value);
+            if axis == 1 && self.is_at_front_corner(foot) {
+                continue;
+            }
             texts.push(Text {
                 at: away(foot, out, start + reach(half)),
                 text: tick.label,

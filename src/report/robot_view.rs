@@ -70,9 +70,11 @@ pub(super) fn best_view(corners: &[Vector3<f64>], marks: &[Mark], radius: f64) -
         for (index, a) in flat.iter().enumerate() {
             for b in &flat[..index] {
                 let distance = (a[0] - b[0]).hypot(a[1] - b[1]) / radius;
-                // Joints matter more than corners; the pair's first point has the larger index.
-                let weight = if index < marks.len() { 3.0 } else { 1.0 };
-                score += weight * (distance * distance + 0.1).ln();
+                score += (distance * distance + 0.1).ln();
+                // Joints should not cover each other; the pair's first point has the larger index.
+                if index < marks.len() {
+                    score -= 20.0 * (2.5 - distance).max(0.0);
+                }
             }
         }
         if score > best.0 {
