@@ -3,7 +3,7 @@
 
 use super::forward::{row, row_parts};
 use crate::design::{Convention, FrameChain, Geometry, JointKind, Robot};
-use nalgebra::{Isometry3, Translation3, Unit, UnitQuaternion, Vector3};
+use nalgebra::{Isometry3, Quaternion, Translation3, Unit, UnitQuaternion, Vector3};
 
 /// The n + 1 constant transforms C of T(θ) = C₀ · M₁(θ₁) · C₁ · M₂(θ₂) ⋯ M_n(θ_n) · C_n, where M_i
 /// turns about z by θ_i (revolute) or slides along z by θ_i (prismatic), see [`joint_motion`].
@@ -70,10 +70,13 @@ fn of_frames(chain: &FrameChain) -> Vec<Isometry3<f64>> {
     fixed
 }
 
-/// A rotation that takes z to `axis`.
+/// A rotation that takes z to `axis`, exact also next to −z, where the shortest turn has no plane.
 fn from_z(axis: &Unit<Vector3<f64>>) -> UnitQuaternion<f64> {
-    let half_turn = UnitQuaternion::from_axis_angle(&Vector3::x_axis(), std::f64::consts::PI);
-    UnitQuaternion::rotation_between_axis(&Vector3::z_axis(), axis).unwrap_or(half_turn)
+    if axis.z < 0.0 {
+        let half_turn = UnitQuaternion::from_quaternion(Quaternion::new(0.0, 1.0, 0.0, 0.0));
+        return from_z(&-*axis) * half_turn;
+    }
+    UnitQuaternion::from_quaternion(Quaternion::new(1.0 + axis.z, -axis.y, axis.x, 0.0))
 }
 
 #[cfg(test)]
@@ -90,7 +93,7 @@ mod tests {
             Vector3::new(-0.3, 0.5, 0.2),
         ] {
             let axis = Unit::new_normalize(axis);
-            assert!((from_z(&axis) * Vector3::z() - *axis).norm() < 1e-12);
+            assert!((from_z(&axis) * Vector3::z() - *axis).norm() < 1e-15);
         }
         assert_eq!(from_z(&Vector3::z_axis()), UnitQuaternion::identity());
     }

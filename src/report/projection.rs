@@ -222,11 +222,14 @@ impl Space {
         self.at(&point)
     }
 
-    /// Whether a label of the y axis would meet one of the x axis.
-    fn is_at_front_corner(&self, foot: Point) -> bool {
-        let far = self.far();
-        let corner = self.at(&self.corner([!far[0], !far[1], false]));
-        (foot[0] - corner[0]).hypot(foot[1] - corner[1]) < 8.0
+    /// Whether a tick of the y axis at `foot` is so near to one of the x axis that their labels
+    /// would meet.
+    fn meets_x_label(&self, foot: Point) -> bool {
+        let is_near = |tick: Tick| {
+            let other = self.on_edge(0, tick.value);
+            (foot[0] - other[0]).hypot(foot[1] - other[1]) < 11.0
+        };
+        self.ticks(0).into_iter().any(is_near)
     }
 
     /// Labels of the ticks of an axis and, farther out, its title.
@@ -241,7 +244,7 @@ impl Space {
             let half = [0.5 * Label::new(&tick.label, SMALL).width(), 0.5 * SMALL];
             widest = widest.max(2.0 * reach(half));
             let foot = self.on_edge(axis, tick.value);
-            if axis == 1 && self.is_at_front_corner(foot) {
+            if axis == 1 && self.meets_x_label(foot) {
                 continue;
             }
             texts.push(Text {
