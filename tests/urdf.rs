@@ -228,6 +228,7 @@ fn text_that_is_no_urdf_is_refused() {
         "<a>".repeat(50_000),
         "</a>".repeat(50_000)
     );
+    let many = format!("<robot>{}</robot>", "<link name='a'/>".repeat(100_000));
     let bomb = "<!DOCTYPE r [<!ENTITY a \"aaaa\">]><robot>&a;</robot>";
     let texts = [
         "",
@@ -243,6 +244,7 @@ fn text_that_is_no_urdf_is_refused() {
         "<x:robot/>",
         &deep,
         &nested,
+        &many,
         bomb,
         "<robot><link name='a'/></robot>",
     ];

@@ -1,7 +1,7 @@
 //! Reads a robot from a URDF file: the chain of joints from a base link to a tip link.
 //!
-//! The file is first read as XML, which tells where everything stands; a plain copy of its links
-//! and joints then goes to the URDF reader. Meshes, masses, branches and extensions are ignored.
+//! The file is first read as XML, which tells where everything stands; a plain copy of its
+//! joints then goes to the URDF reader. Meshes, masses, branches and extensions are ignored.
 
 mod chain;
 mod tree;

@@ -21,6 +21,9 @@ const PARTS: [(&str, &[&str]); 6] = [
 /// Most elements of a file; an arm has a few hundred.
 const MAX_NODES: u32 = 1_000_000;
 
+/// Most links or joints of a file; searches among them take quadratic time.
+const MAX_PARTS: usize = 2000;
+
 /// A URDF file as XML.
 pub(super) struct Xml<'s> {
     source: &'s Source,
@@ -46,6 +49,12 @@ impl<'s> Xml<'s> {
             let problem = problem("not a URDF file", found, "the root element <robot>");
             return Err(xml.error(head(root), problem));
         }
+        let size = xml.joints().len().max(xml.links().len());
+        if size > MAX_PARTS {
+            let expected = format!("at most {MAX_PARTS} links and joints");
+            let problem = problem("the URDF file is too large", format!("{size}"), &expected);
+            return Err(xml.error(head(root), problem));
+        }
         Ok(xml)
     }
 
@@ -69,18 +78,13 @@ impl<'s> Xml<'s> {
         InputError::at(self.source, "", span, problem)
     }
 
-    /// The file as the URDF reader is to see it: links by name, joints with what moves them, and
-    /// nothing else. Meshes, masses, speeds and extensions cannot hinder it then.
+    /// `joints` as the URDF reader is to see them: with what moves them and nothing else. Meshes,
+    /// masses, speeds and extensions cannot hinder it then.
     pub(super) fn plain(&self, joints: &[Node]) -> String {
         let mut text = String::from("<robot");
         let version = self.document.root_element().attribute("version");
         push_attribute(&mut text, "version", version);
         text.push('>');
-        for link in self.links() {
-            text.push_str("<link");
-            push_attribute(&mut text, "name", link.attribute("name"));
-            text.push_str("/>");
-        }
         joints.iter().for_each(|joint| push_joint(&mut text, joint));
         text.push_str("</robot>");
         text
