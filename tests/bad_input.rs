@@ -221,14 +221,10 @@ fn broken_toml() {
 }
 
 #[test]
-fn urdf_is_not_available() {
-    let robot = "name = \"arm\"\nurdf = \"arm.urdf\"\n";
-    assert_bad_robot(
-        robot,
-        2,
-        "urdf",
-        &["not available in this version", "joints"],
-    );
+fn urdf_files_must_be_there() {
+    let robot = "name = \"arm\"\nurdf = \"none.urdf\"\n";
+    let hints = ["cannot read the URDF file", "relative to the robot file"];
+    assert_bad_robot(robot, 2, "urdf", &hints);
 }
 
 #[test]

@@ -36,6 +36,7 @@ fn robot(name: &str, case: &Value) -> Robot {
             joints: (0..a.len()).map(joint).collect(),
         },
         physical_limits: None,
+        tool: nalgebra::Isometry3::identity(),
     }
 }
 

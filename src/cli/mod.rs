@@ -4,6 +4,7 @@
 //! or was interrupted, 2 bad input.
 
 mod check;
+mod joint_table;
 mod list;
 mod output;
 mod progress;

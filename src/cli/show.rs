@@ -1,9 +1,12 @@
 //! `faultspace show`.
 
+use super::joint_table::joint_table;
 use super::{Ending, output};
-use crate::design::{Convention, Geometry, Joint, JointKind, Robot, TaskSpace, read_design};
-use crate::kinematics::reach;
-use crate::report::{RobotFigure, figure_png, figure_svg, write_bytes};
+use crate::design::{JointKind, Robot, TaskSpace, read_design};
+use crate::kinematics::{JointPlace, display_posture, joint_places, tool_frame, workspace_extent};
+use crate::report::{
+    Figure, JointMark, RobotFigure, SpatialRobotFigure, figure_png, figure_svg, plain, write_bytes,
+};
 use crate::workspace::planar::PlanarPosition;
 use std::fmt::Write;
 use std::path::Path;
@@ -27,17 +30,9 @@ fn draw(robot: &Robot, out: &Path) -> Result<(), Ending> {
         output::message(&format!("error: {message}"));
         Ending::BadInput
     };
-    let chain = robot
-        .planar_chain()
-        .map_err(|reason| refuse(format!("only planar robots are drawn: {reason}")))?;
-    let figure = RobotFigure {
-        title: robot.name.clone(),
-        links: &chain.lengths,
-        unrestricted: PlanarPosition::unrestricted_radii(&chain.lengths),
-    };
     let bytes = match out.extension().and_then(|extension| extension.to_str()) {
-        Some("png") => figure_png(&figure),
-        Some("svg") => figure_svg(&figure).map(String::into_bytes),
+        Some("png") => with_figure(robot, figure_png),
+        Some("svg") => with_figure(robot, |figure| figure_svg(figure).map(String::into_bytes)),
         _ => {
             return Err(refuse(
                 "`--out` needs a name that ends in .png or .svg".into(),
@@ -49,6 +44,34 @@ fn draw(robot: &Robot, out: &Path) -> Result<(), Ending> {
         .map_err(|error| refuse(error.to_string()))
 }
 
+/// Hands over the drawing of a robot: planar ones from above, all others in space.
+fn with_figure<T>(robot: &Robot, write: impl FnOnce(&dyn Figure) -> T) -> T {
+    let title = robot.name.clone();
+    if let Ok(chain) = robot.planar_chain() {
+        return write(&RobotFigure {
+            title,
+            links: &chain.lengths,
+            unrestricted: PlanarPosition::unrestricted_radii(&chain.lengths),
+        });
+    }
+    let theta = display_posture(robot);
+    let mark = |(joint, place): (usize, JointPlace)| JointMark {
+        slides: robot.joint_kind(joint) == JointKind::Prismatic,
+        frame: place.frame,
+        entry: place.entry,
+        foot: place.foot,
+    };
+    let joints = joint_places(robot, &theta)
+        .into_iter()
+        .enumerate()
+        .map(mark);
+    write(&SpatialRobotFigure {
+        title,
+        joints: joints.collect(),
+        tool: tool_frame(robot, &theta),
+    })
+}
+
 fn describe(robot: &Robot) -> String {
     let mut text = format!("{}\n", robot.name);
     // Writing to a string cannot fail.
@@ -58,90 +81,37 @@ fn describe(robot: &Robot) -> String {
     let _ = writeln!(text, "\n{}", joint_table(robot));
     for task in TaskSpace::ALL.into_iter().filter(|t| can_do(robot, *t)) {
         let degree = robot.degree_of_redundancy(task);
-        let label = format!("degree of redundancy, {task}:");
-        let _ = writeln!(text, "{label:<40} {degree}");
+        text += &line(
+            &format!("degree of redundancy, {task}:"),
+            &degree.to_string(),
+        );
     }
-    let _ = match reach(robot) {
-        reach if reach.is_finite() => writeln!(text, "{:<40} {reach} m", "reach at most:"),
-        _ => writeln!(text, "{:<40} not limited", "reach at most:"),
+    text + &extent_lines(robot)
+}
+
+/// How far the robot reaches, seen from joint 1.
+fn extent_lines(robot: &Robot) -> String {
+    let Some(extent) = workspace_extent(robot) else {
+        return line(
+            "reach from joint 1:",
+            "not limited: a prismatic joint has no limits",
+        );
     };
+    let shown = |value: f64| format!("{} m", plain(value));
+    let heights = format!("{} to {}", plain(extent.lower), shown(extent.upper));
+    let mut text = line("reach from joint 1:", &shown(extent.reach));
+    text += &line("radius about the axis of joint 1:", &shown(extent.radius));
+    if robot.planar_chain().is_err() {
+        text += &line("height along the axis of joint 1:", &heights);
+    }
     text
+}
+
+fn line(label: &str, value: &str) -> String {
+    format!("{label:<40} {value}\n")
 }
 
 /// A planar robot does tasks in its plane, any other one tasks in space, if it has the joints.
 fn can_do(robot: &Robot, task: TaskSpace) -> bool {
     task.is_planar() == robot.planar_chain().is_ok() && robot.degree_of_redundancy(task) >= 0
-}
-
-fn joint_table(robot: &Robot) -> String {
-    match &robot.geometry {
-        Geometry::Planar { lengths } => link_table(robot, lengths),
-        Geometry::Rows { convention, joints } => row_table(robot, *convention, joints),
-    }
-}
-
-fn link_table(robot: &Robot, lengths: &[f64]) -> String {
-    let mut text = format!("joint  kind       length_m{}\n", limit_header(robot));
-    for (joint, length) in lengths.iter().enumerate() {
-        let (number, limits) = (joint + 1, limits(robot, joint));
-        let _ = writeln!(text, "{number:>5}  revolute   {length:>8}{limits}");
-    }
-    text
-}
-
-fn row_table(robot: &Robot, convention: Convention, joints: &[Joint]) -> String {
-    let mut text = format!(
-        "joint  kind       alpha_deg         a         d  theta_deg{}  ({})\n",
-        limit_header(robot),
-        convention_name(convention),
-    );
-    for (index, joint) in joints.iter().enumerate() {
-        let link = joint.link;
-        let _ = writeln!(
-            text,
-            "{:>5}  {:<9}  {:>9.3} {:>9.4} {:>9.4}  {:>9.3}{}",
-            index + 1,
-            kind_name(joint.kind),
-            link.twist.to_degrees(),
-            link.length,
-            link.offset,
-            link.angle.to_degrees(),
-            limits(robot, index),
-        );
-    }
-    text
-}
-
-fn convention_name(convention: Convention) -> &'static str {
-    match convention {
-        Convention::Standard => "standard convention",
-        Convention::Modified => "modified convention",
-    }
-}
-
-fn kind_name(kind: JointKind) -> &'static str {
-    match kind {
-        JointKind::Revolute => "revolute",
-        JointKind::Prismatic => "prismatic",
-    }
-}
-
-fn limit_header(robot: &Robot) -> &'static str {
-    match robot.physical_limits {
-        Some(_) => "  physical limits",
-        None => "",
-    }
-}
-
-fn limits(robot: &Robot, joint: usize) -> String {
-    let Some(limits) = &robot.physical_limits else {
-        return String::new();
-    };
-    let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
-    match robot.joint_kind(joint) {
-        JointKind::Revolute => {
-            format!("  {:.3}° to {:.3}°", lower.to_degrees(), upper.to_degrees())
-        }
-        JointKind::Prismatic => format!("  {lower} m to {upper} m"),
-    }
 }

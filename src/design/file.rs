@@ -1,7 +1,8 @@
 //! Reads a robot from its TOML file.
 
-use super::rows::{self, ROW_EXAMPLE};
-use super::{Geometry, Robot, physical_limits};
+use super::rows;
+use super::urdf::UrdfArm;
+use super::{Geometry, PhysicalLimits, Robot, physical_limits, tool, urdf};
 use crate::diagnostic::{Document, InputError, Item, Problem, Source, Table};
 use std::path::Path;
 
@@ -15,6 +16,8 @@ const KEYS: &[&str] = &[
     "urdf",
     "base",
     "tip",
+    "use_urdf_limits",
+    "tool",
     "physical_limits",
 ];
 
@@ -37,17 +40,35 @@ pub fn read_design(path: &Path) -> Result<Robot, InputError> {
     parse_design(&Source::read(path)?)
 }
 
-/// Reads a robot from the text of its file.
+/// Reads a robot from the text of its file. A URDF file that it names is found relative to
+/// `source`'s own name.
 ///
 /// # Errors
 /// The text does not describe a robot: the first mistake in file order.
 pub fn parse_design(source: &Source) -> Result<Robot, InputError> {
-    let document = Document::parse(source)?;
-    let robot = read_robot(&document.root(KEYS));
-    document.finish(robot)
+    Ok(parse_design_files(source)?.robot)
 }
 
-fn read_robot(root: &Table) -> Option<Robot> {
+/// A robot and what was read for it beside its own file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ParsedDesign {
+    /// The robot.
+    pub robot: Robot,
+    /// The URDF file that the robot file names, if it names one.
+    pub urdf: Option<Source>,
+}
+
+/// As [`parse_design`], with the text of the URDF file that was read.
+///
+/// # Errors
+/// The text does not describe a robot: the first mistake in file order.
+pub fn parse_design_files(source: &Source) -> Result<ParsedDesign, InputError> {
+    let document = Document::parse(source)?;
+    let design = read_robot(&document.root(KEYS), source.file());
+    document.finish(design)
+}
+
+fn read_robot(root: &Table, file: &str) -> Option<ParsedDesign> {
     root.require("name", "name = \"my-robot\"");
     let name = root.text("name");
     if let Some(empty) = name.as_ref().filter(|name| name.value.trim().is_empty()) {
@@ -56,36 +77,69 @@ fn read_robot(root: &Table) -> Option<Robot> {
             .reject(&empty.place, "the name is empty", "a name", help);
     }
     let source = root.text("source").map(|item| item.value);
-    let geometry = read_geometry(root);
-    let limits = geometry
-        .as_ref()
-        .and_then(|geometry| physical_limits::read(root, geometry));
-    Some(Robot {
+    let description = read_description(root, file);
+    let geometry = description.as_ref().map(|described| &described.geometry);
+    let tool = tool::read(root, geometry);
+    let limits = geometry.and_then(|geometry| physical_limits::read(root, geometry));
+    let description = description?;
+    let robot = Robot {
         name: name?.value,
         source,
-        geometry: geometry?,
-        physical_limits: limits,
+        geometry: description.geometry,
+        tool: tool?,
+        physical_limits: limits.or(description.limits),
+    };
+    Some(ParsedDesign {
+        robot,
+        urdf: description.urdf,
     })
 }
 
+/// Links and joints, and what comes with them from a URDF file.
+struct Description {
+    geometry: Geometry,
+    limits: Option<PhysicalLimits>,
+    urdf: Option<Source>,
+}
+
+impl From<Geometry> for Description {
+    fn from(geometry: Geometry) -> Description {
+        Description {
+            geometry,
+            limits: None,
+            urdf: None,
+        }
+    }
+}
+
+impl From<UrdfArm> for Description {
+    fn from(arm: UrdfArm) -> Description {
+        Description {
+            geometry: Geometry::Frames(arm.chain),
+            limits: arm.limits,
+            urdf: Some(arm.source),
+        }
+    }
+}
+
 /// Exactly one of the three descriptions.
-fn read_geometry(root: &Table) -> Option<Geometry> {
+fn read_description(root: &Table, file: &str) -> Option<Description> {
     let given: Vec<&str> = ["links", "joints", "urdf"]
         .into_iter()
         .filter(|key| root.entry(key).is_some())
         .collect();
-    if let ["urdf"] = given[..] {
-        return refuse_urdf(root);
+    if !given.contains(&"urdf") {
+        for key in ["base", "tip", "use_urdf_limits"] {
+            refuse_beside(root, key, "urdf");
+        }
     }
-    for key in ["base", "tip"] {
-        refuse_beside(root, key, "urdf");
+    if !given.contains(&"joints") {
+        refuse_beside(root, "convention", "joints");
     }
     match given[..] {
-        ["links"] => {
-            refuse_beside(root, "convention", "joints");
-            read_links(root)
-        }
-        ["joints"] => rows::read(root),
+        ["links"] => read_links(root).map(Description::from),
+        ["joints"] => rows::read(root).map(Description::from),
+        [_] => urdf::read(root, file).map(Description::from),
         [] => {
             root.require("links", "links = [1.0, 1.0, 1.0]");
             None
@@ -94,7 +148,6 @@ fn read_geometry(root: &Table) -> Option<Geometry> {
             refuse_two(root, first, last);
             None
         }
-        _ => None,
     }
 }
 
@@ -127,20 +180,6 @@ pub(super) fn check_joint_count<T>(root: &Table, array: &Item<T>, joints: usize)
         help: "give one entry per joint, base first".into(),
     };
     root.problems().report(&array.place, problem);
-}
-
-fn refuse_urdf(root: &Table) -> Option<Geometry> {
-    let place = root.key_place("urdf")?;
-    let problem = Problem {
-        message: "URDF import is not available in this version".into(),
-        found: "`urdf`".into(),
-        expected: "`links` or `joints`".into(),
-        help: format!(
-            "describe the arm with `links = [1.0, 1.0, 1.0]` (planar) or `{ROW_EXAMPLE}`"
-        ),
-    };
-    root.problems().report(&place, problem);
-    None
 }
 
 fn refuse_two(root: &Table, first: &str, second: &str) {
@@ -226,9 +265,11 @@ mod tests {
         assert_eq!(error("name = 'r'").key(), "links");
         let twice = error("name = 'r'\nlinks = [1, 1]\njoints = []");
         assert_eq!((twice.line(), twice.key()), (Some(3), "joints"));
-        let urdf = error("name = 'r'\nurdf = 'arm.urdf'\nbase = 'a'\ntip = 'b'");
-        assert!(urdf.problem().message.contains("not available"));
+        let urdf = error("name = 'r'\nurdf = 'no/such.urdf'\nbase = 'a'\ntip = 'b'");
+        assert_eq!((urdf.line(), urdf.key()), (Some(2), "urdf"));
         assert_eq!(error("name='r'\nlinks=[1, 1]\nbase='a'").key(), "base");
+        let limits = error("name='r'\nlinks=[1, 1]\nuse_urdf_limits=true");
+        assert_eq!(limits.key(), "use_urdf_limits");
         let convention = error("name='r'\nlinks=[1, 1]\nconvention='standard'");
         assert_eq!(convention.key(), "convention");
     }

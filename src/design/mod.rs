@@ -4,13 +4,17 @@
 //! name the unit.
 
 mod file;
+mod frames;
 mod physical_limits;
 mod planar;
 mod robot;
 mod rows;
 mod task;
+mod tool;
+mod urdf;
 
-pub use file::{parse_design, read_design};
+pub use file::{ParsedDesign, parse_design, parse_design_files, read_design};
+pub use frames::{FrameChain, FrameJoint};
 pub use planar::{NotPlanar, PlanarChain};
 pub use robot::{Convention, Geometry, Joint, JointKind, Link, PhysicalLimits, Robot};
 pub use task::TaskSpace;

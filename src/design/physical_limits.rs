@@ -39,6 +39,7 @@ fn kinds(geometry: &Geometry) -> Vec<JointKind> {
     match geometry {
         Geometry::Planar { lengths } => vec![JointKind::Revolute; lengths.len()],
         Geometry::Rows { joints, .. } => joints.iter().map(|joint| joint.kind).collect(),
+        Geometry::Frames(chain) => chain.joints.iter().map(|joint| joint.kind).collect(),
     }
 }
 

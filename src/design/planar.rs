@@ -1,6 +1,7 @@
 //! The robots that move in a plane, reduced to link lengths and angle offsets.
 
 use super::{Convention, Geometry, Joint, JointKind, Robot};
+use nalgebra::Isometry3;
 use std::f64::consts::{PI, TAU};
 use std::fmt;
 
@@ -55,8 +56,12 @@ impl Robot {
     ///
     /// # Errors
     /// A joint is prismatic, an axis is tilted, or a link has no length (in the modified
-    /// convention that is always so for the last one, whose tool sits on the last axis).
+    /// convention that is always so for the last one, whose tool sits on the last axis), the robot
+    /// has a tool of its own, or it comes from a URDF file.
     pub fn planar_chain(&self) -> Result<PlanarChain, NotPlanar> {
+        if self.tool != Isometry3::identity() {
+            return refuse("it has a tool of its own".into());
+        }
         match &self.geometry {
             Geometry::Planar { lengths } => Ok(PlanarChain {
                 lengths: lengths.clone(),
@@ -67,6 +72,7 @@ impl Robot {
                 let links = signed_links(*convention, joints)?;
                 chain(&links, joints)
             }
+            Geometry::Frames(_) => refuse("it comes from a URDF file".into()),
         }
     }
 }
@@ -143,6 +149,7 @@ mod tests {
                 convention,
                 joints: lengths.iter().map(joint).collect(),
             },
+            tool: Isometry3::identity(),
             physical_limits: None,
         }
     }

@@ -1,6 +1,7 @@
 //! A robot arm: a serial chain of revolute and prismatic joints.
 
-use super::TaskSpace;
+use super::{FrameChain, TaskSpace, frames};
+use nalgebra::Isometry3;
 use serde::{Deserialize, Serialize};
 
 /// A serial robot arm with its origin.
@@ -12,6 +13,9 @@ pub struct Robot {
     pub source: Option<String>,
     /// Links and joints.
     pub geometry: Geometry,
+    /// The tool's frame in the frame after the last link, metres; the identity if the robot has no
+    /// tool of its own.
+    pub tool: Isometry3<f64>,
     /// Limits that hold before and after a failure, if the robot has any.
     pub physical_limits: Option<PhysicalLimits>,
 }
@@ -32,6 +36,8 @@ pub enum Geometry {
         /// One row per joint.
         joints: Vec<Joint>,
     },
+    /// Joints with frames and axes of their own, as URDF files have them.
+    Frames(FrameChain),
 }
 
 /// The order of the four motions of a Denavit–Hartenberg row (rotations R, translations T).
@@ -77,6 +83,8 @@ pub struct Link {
 }
 
 /// Limits of every joint variable, radians for revolute and metres for prismatic joints.
+///
+/// Limits of a revolute joint that are 2π or more apart do not limit it.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PhysicalLimits {
     /// Lower limits, joint 1 first.
@@ -91,6 +99,7 @@ impl Robot {
         match &self.geometry {
             Geometry::Planar { lengths } => lengths.len(),
             Geometry::Rows { joints, .. } => joints.len(),
+            Geometry::Frames(chain) => chain.joints.len(),
         }
     }
 
@@ -99,6 +108,7 @@ impl Robot {
         match &self.geometry {
             Geometry::Planar { .. } => JointKind::Revolute,
             Geometry::Rows { joints, .. } => joints[joint].kind,
+            Geometry::Frames(chain) => chain.joints[joint].kind,
         }
     }
 
@@ -107,8 +117,8 @@ impl Robot {
         self.joints() as isize - task.dimension() as isize
     }
 
-    /// The laws of the type: at least one joint, finite numbers, positive planar links, limits in
-    /// order and one pair per joint.
+    /// The laws of the type: at least one joint, finite numbers, positive planar links, unit axes,
+    /// limits in order and one pair per joint.
     ///
     /// # Errors
     /// A sentence that names the broken law.
@@ -119,8 +129,9 @@ impl Robot {
         let sound = match &self.geometry {
             Geometry::Planar { lengths } => lengths.iter().all(|l| l.is_finite() && *l > 0.0),
             Geometry::Rows { joints, .. } => joints.iter().all(|joint| joint.link.is_finite()),
+            Geometry::Frames(chain) => chain.is_sound(),
         };
-        if !sound {
+        if !sound || !frames::is_finite(&self.tool) {
             return Err("a link that is not finite, or not positive in the plane".into());
         }
         let ordered = |limits: &PhysicalLimits| {
@@ -156,6 +167,7 @@ mod tests {
             geometry: Geometry::Planar {
                 lengths: vec![1.0; 3],
             },
+            tool: Isometry3::identity(),
             physical_limits: None,
         };
         assert!(robot.check().is_ok());

@@ -7,10 +7,6 @@ use crate::diagnostic::Table;
 /// Keys of one row. In the variable's column stands its offset.
 const KEYS: &[&str] = &["kind", "alpha_deg", "a", "d", "theta_deg"];
 
-/// A row as a file writes it.
-pub(super) const ROW_EXAMPLE: &str =
-    "joints = [{ kind = \"revolute\", alpha_deg = 0.0, a = 1.0, d = 0.0, theta_deg = 0.0 }]";
-
 /// Largest twist or angle, degrees: ten turns. Beyond, the fraction of a turn loses its digits.
 const MAX_DEGREES: f64 = 3600.0;
 

@@ -64,11 +64,21 @@ impl<'s> Problems<'s> {
         self.keep_first((true, place.span.start), place, problem);
     }
 
+    /// Notes a mistake in another file, which the value at `place` names.
+    pub fn pass_on(&self, place: &Place, error: InputError) {
+        self.keep((false, place.span.start), || error);
+    }
+
     fn keep_first(&self, rank: Rank, place: &Place, problem: Problem) {
+        self.keep(rank, || {
+            InputError::at(self.source, &place.key, place.span.clone(), problem)
+        });
+    }
+
+    fn keep(&self, rank: Rank, error: impl FnOnce() -> InputError) {
         let mut first = self.first.borrow_mut();
         if first.as_ref().is_none_or(|(kept, _)| rank < *kept) {
-            let error = InputError::at(self.source, &place.key, place.span.clone(), problem);
-            *first = Some((rank, error));
+            *first = Some((rank, error()));
         }
     }
 

@@ -67,7 +67,7 @@ fn decode(file: String, bytes: Vec<u8>) -> Result<Source, InputError> {
             let problem = Problem {
                 message: "the file is not UTF-8 text".into(),
                 found: "a byte that is not UTF-8".into(),
-                expected: "TOML, which is always UTF-8".into(),
+                expected: "text in UTF-8".into(),
                 help: "save the file with the encoding UTF-8".into(),
             };
             InputError::at(&Source::new(file.as_str(), text), "", bad..bad + 1, problem)
@@ -78,7 +78,7 @@ fn too_long(file: &str) -> InputError {
     let problem = Problem {
         message: "the file is too long".into(),
         found: format!("more than {MAX_BYTES} bytes"),
-        expected: "a robot or study of a few kilobytes".into(),
+        expected: "an input file of some kilobytes".into(),
         help: "check that this is the file you meant".into(),
     };
     InputError::in_file(file, problem)

@@ -5,11 +5,12 @@
 //! R_z(θ) T_z(d) T_x(a) R_x(α) in the standard and R_x(α) T_x(a) R_z(θ) T_z(d) in the modified
 //! convention; the planar shorthand is a standard row with α = d = 0.
 
-use crate::design::{Convention, Geometry, JointKind, Link, Robot};
+use super::fixed::fixed_transforms;
+use crate::design::{Convention, FrameJoint, Geometry, JointKind, Link, Robot};
 use nalgebra::{Isometry3, Translation3, UnitQuaternion, Vector3};
 
-/// The base frame (the identity), then the frame after each of the n rows; the last one is the
-/// tool's.
+/// The base frame (the identity), then the frame after each of the n joints and its link (of a
+/// URDF chain: after the joint's motion); the last one includes the tip and the tool.
 ///
 /// `theta` holds the n joint variables; missing ones count as 0 and further ones are ignored.
 pub fn joint_frames(robot: &Robot, theta: &[f64]) -> Vec<Isometry3<f64>> {
@@ -18,8 +19,17 @@ pub fn joint_frames(robot: &Robot, theta: &[f64]) -> Vec<Isometry3<f64>> {
     let mut frame = Isometry3::identity();
     for joint in 0..robot.joints() {
         let variable = theta.get(joint).copied().unwrap_or(0.0);
-        frame *= row_motion(robot, joint, variable);
+        frame *= match &robot.geometry {
+            Geometry::Frames(chain) => frame_motion(&chain.joints[joint], variable),
+            _ => row_motion(robot, joint, variable),
+        };
         frames.push(frame);
+    }
+    if let Some(last) = frames.last_mut() {
+        if let Geometry::Frames(chain) = &robot.geometry {
+            *last *= chain.tip;
+        }
+        *last *= robot.tool;
     }
     frames
 }
@@ -31,70 +41,43 @@ pub fn tool_frame(robot: &Robot, theta: &[f64]) -> Isometry3<f64> {
 
 /// An upper bound of the tool's distance from the base, metres: the sum of all links' lengths.
 ///
-/// Infinite if a prismatic joint has no physical limits.
-pub fn reach(robot: &Robot) -> f64 {
-    let Geometry::Rows { joints, .. } = &robot.geometry else {
-        return (0..robot.joints()).map(|k| row(robot, k).length).sum();
-    };
-    let span = |(index, joint): (usize, &crate::design::Joint)| {
-        let offset = match (joint.kind, &robot.physical_limits) {
-            (JointKind::Revolute, _) => joint.link.offset.abs(),
+/// Infinite if a prismatic joint has no physical limits. See
+/// [`workspace_extent`](super::workspace_extent) for the true reach.
+pub fn reach_bound(robot: &Robot) -> f64 {
+    let fixed = fixed_transforms(robot);
+    let span = |(index, link): (usize, &Isometry3<f64>)| {
+        let vector = link.translation.vector;
+        match (robot.joint_kind(index), &robot.physical_limits) {
+            (JointKind::Revolute, _) => vector.norm(),
             (JointKind::Prismatic, None) => f64::INFINITY,
+            // The length is convex in the joint variable: an end is the worst case.
             (JointKind::Prismatic, Some(limits)) => {
-                let ends = [limits.lower[index], limits.upper[index]];
-                let far = |end: f64| (joint.link.offset + end).abs();
-                far(ends[0]).max(far(ends[1]))
+                let length = |end: f64| (vector + end * Vector3::z()).norm();
+                length(limits.lower[index]).max(length(limits.upper[index]))
             }
-        };
-        joint.link.length.hypot(offset)
-    };
-    joints.iter().enumerate().map(span).sum()
-}
-
-/// The n + 1 constant transforms C around the joints: T(θ) = C₀ M₁ C₁ ⋯ M_n C_n, where M turns
-/// about or slides along its z axis by the joint variable.
-pub fn fixed_transforms(robot: &Robot) -> Vec<Isometry3<f64>> {
-    let mut fixed = vec![Isometry3::identity()];
-    for joint in 0..robot.joints() {
-        let row = row_motion(robot, joint, 0.0);
-        if let Geometry::Rows {
-            convention: Convention::Modified,
-            joints,
-        } = &robot.geometry
-        {
-            let link = joints[joint].link;
-            let about_x = Isometry3::from_parts(
-                Translation3::new(link.length, 0.0, 0.0),
-                UnitQuaternion::from_axis_angle(&Vector3::x_axis(), link.twist),
-            );
-            fixed[joint] *= about_x;
-            fixed.push(about_x.inverse() * row);
-        } else {
-            fixed.push(row);
         }
-    }
-    fixed
+    };
+    let base = fixed.first().map_or(0.0, |c| c.translation.vector.norm());
+    base + fixed.iter().skip(1).enumerate().map(span).sum::<f64>()
 }
 
-/// The constant part of row `joint` (from 0).
-fn row(robot: &Robot, joint: usize) -> Link {
-    match &robot.geometry {
-        Geometry::Planar { lengths } => Link {
-            twist: 0.0,
-            length: lengths[joint],
-            offset: 0.0,
-            angle: 0.0,
-        },
-        Geometry::Rows { joints, .. } => joints[joint].link,
+/// The constant part of row `joint` (from 0); a row of zeros for a URDF chain.
+pub(super) fn row(robot: &Robot, joint: usize) -> Link {
+    let length = match &robot.geometry {
+        Geometry::Rows { joints, .. } => return joints[joint].link,
+        Geometry::Planar { lengths } => lengths[joint],
+        Geometry::Frames(_) => 0.0,
+    };
+    Link {
+        twist: 0.0,
+        length,
+        offset: 0.0,
+        angle: 0.0,
     }
 }
 
-fn row_motion(robot: &Robot, joint: usize, variable: f64) -> Isometry3<f64> {
-    let mut link = row(robot, joint);
-    match robot.joint_kind(joint) {
-        JointKind::Revolute => link.angle += variable,
-        JointKind::Prismatic => link.offset += variable,
-    }
+/// R_z(angle) T_z(offset) and R_x(twist) T_x(length) of a row.
+pub(super) fn row_parts(link: &Link) -> [Isometry3<f64>; 2] {
     let about_z = Isometry3::from_parts(
         Translation3::new(0.0, 0.0, link.offset),
         UnitQuaternion::from_axis_angle(&Vector3::z_axis(), link.angle),
@@ -103,6 +86,16 @@ fn row_motion(robot: &Robot, joint: usize, variable: f64) -> Isometry3<f64> {
         Translation3::new(link.length, 0.0, 0.0),
         UnitQuaternion::from_axis_angle(&Vector3::x_axis(), link.twist),
     );
+    [about_z, about_x]
+}
+
+fn row_motion(robot: &Robot, joint: usize, variable: f64) -> Isometry3<f64> {
+    let mut link = row(robot, joint);
+    match robot.joint_kind(joint) {
+        JointKind::Revolute => link.angle += variable,
+        JointKind::Prismatic => link.offset += variable,
+    }
+    let [about_z, about_x] = row_parts(&link);
     match &robot.geometry {
         Geometry::Rows {
             convention: Convention::Modified,
@@ -110,6 +103,14 @@ fn row_motion(robot: &Robot, joint: usize, variable: f64) -> Isometry3<f64> {
         } => about_x * about_z,
         _ => about_z * about_x,
     }
+}
+
+fn frame_motion(joint: &FrameJoint, variable: f64) -> Isometry3<f64> {
+    let motion = match joint.kind {
+        JointKind::Revolute => Isometry3::rotation(joint.axis.scale(variable)),
+        JointKind::Prismatic => Isometry3::from(Translation3::from(joint.axis.scale(variable))),
+    };
+    joint.origin * motion
 }
 
 #[cfg(test)]
@@ -135,6 +136,7 @@ mod tests {
                 convention,
                 joints: rows.iter().map(joint).collect(),
             },
+            tool: Isometry3::identity(),
             physical_limits: None,
         }
     }
@@ -151,6 +153,7 @@ mod tests {
             name: "planar".into(),
             source: None,
             geometry: Geometry::Planar { lengths },
+            tool: Isometry3::identity(),
             physical_limits: None,
         };
         let (a, b, c): (f64, f64, f64) = (0.3, 0.3 - 1.1, 0.3 - 1.1 + 2.0);
@@ -161,7 +164,7 @@ mod tests {
         let y = a.sin() + 0.5 * b.sin() + 0.25 * c.sin();
         assert_at(&frames[3], x, y, 0.0);
         assert!((frames[3].rotation.euler_angles().2 - c).abs() < 1e-14);
-        assert_eq!(reach(&arm), 1.75);
+        assert_eq!(reach_bound(&arm), 1.75);
     }
 
     /// A base rotation, a shoulder and an elbow, with one closed form for both conventions.
@@ -196,7 +199,7 @@ mod tests {
         assert_at(&at_elbow, elbow * t1.cos(), elbow * t1.sin(), end);
         let tip = at_elbow * Translation3::new(0.5, 0.0, 0.0);
         assert_at(&tip, out * t1.cos(), out * t1.sin(), up);
-        assert!((reach(&standard) - 1.6).abs() < 1e-15);
+        assert!((reach_bound(&standard) - 1.6).abs() < 1e-15);
     }
 
     #[test]
@@ -211,12 +214,12 @@ mod tests {
         );
         let tool = tool_frame(&arm, &[0.5, 0.6]);
         assert_at(&tool, -0.9 * 0.7f64.sin(), 0.9 * 0.7f64.cos(), 0.0);
-        assert_eq!(reach(&arm), f64::INFINITY);
+        assert_eq!(reach_bound(&arm), f64::INFINITY);
         arm.physical_limits = Some(PhysicalLimits {
             lower: vec![-PI, -1.5],
             upper: vec![PI, 0.5],
         });
-        assert!((reach(&arm) - 1.2).abs() < 1e-15);
+        assert!((reach_bound(&arm) - 1.2).abs() < 1e-15);
     }
 
     #[test]

@@ -4,16 +4,22 @@
 //! [`Chain`] is the canonical form whose [`Kernel`] the inner loops evaluate.
 
 mod chain;
+mod extent;
+mod fixed;
 mod forward;
 mod kernel;
 mod lane;
 mod newton;
+mod posture;
 mod sine;
 
 pub use chain::{Chain, ChainJoint, JointScale, joint_scales};
-pub use forward::{fixed_transforms, joint_frames, reach, tool_frame};
+pub use extent::{Extent, workspace_extent};
+pub use fixed::{fixed_transforms, joint_motion};
+pub use forward::{joint_frames, reach_bound, tool_frame};
 pub use kernel::{Goal, Kernel, Linearisation};
 pub use lane::{LANES, Lanes, Real};
 pub(crate) use newton::dot;
 pub use newton::{NewtonStep, damped_step, newton_step};
+pub use posture::{JointPlace, display_posture, joint_places};
 pub use sine::sin_cos;

@@ -5,7 +5,7 @@ use super::self_motion::{SelfMotionManifold, joint_ranges};
 use super::{CurveStatus, SearchSettings};
 use crate::angle::AngleSet;
 use crate::design::{Robot, TaskSpace};
-use crate::kinematics::{Chain, Goal, reach};
+use crate::kinematics::{Chain, Goal, reach_bound};
 use nalgebra::Isometry3;
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
@@ -90,7 +90,7 @@ impl PreImageSearch {
         Ok(PreImageSearch {
             chain,
             solver,
-            reach: reach(robot),
+            reach: reach_bound(robot),
             settings,
         })
     }

@@ -2,7 +2,7 @@
 
 use super::settings::{Design, Study};
 use super::{StudyFile, validate};
-use crate::design::parse_design;
+use crate::design::parse_design_files;
 use crate::diagnostic::{Document, InputError, Problem, Problems, Source};
 use sha2::{Digest, Sha256};
 use std::fmt::Write;
@@ -46,10 +46,17 @@ impl Design {
     /// # Errors
     /// The text does not describe a robot.
     pub fn parse(path: PathBuf, source: &Source) -> Result<Design, InputError> {
+        let design = parse_design_files(source)?;
+        let mut bytes = source.text().as_bytes().to_vec();
+        if let Some(urdf) = &design.urdf {
+            // A zero byte is in neither text: no two pairs of files run together to the same bytes.
+            bytes.push(0);
+            bytes.extend(urdf.text().as_bytes());
+        }
         Ok(Design {
             path,
-            sha256: sha256(source.text().as_bytes()),
-            robot: parse_design(source)?,
+            sha256: sha256(&bytes),
+            robot: design.robot,
         })
     }
 }

@@ -37,7 +37,8 @@ pub struct Study {
 pub struct Design {
     /// Absolute path of the robot file.
     pub path: PathBuf,
-    /// SHA-256 of the file's bytes, lower-case hexadecimal.
+    /// SHA-256 of the file's bytes, lower-case hexadecimal; if it names a URDF file, of its bytes, a
+    /// zero byte and the URDF file's bytes.
     pub sha256: String,
     /// The robot.
     pub robot: Robot,

@@ -12,6 +12,7 @@ fn atlas() -> Atlas {
             lengths: vec![1.0, 1.0, 1.0],
         },
         physical_limits: None,
+        tool: nalgebra::Isometry3::identity(),
     };
     let plan = SamplePlan {
         task: TaskSpace::PlanarPosition,
