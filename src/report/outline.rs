@@ -1,0 +1,220 @@
+//! The smooth outline of the unrestricted workspace in a plane through joint 1's axis.
+//!
+//! The map only knows which cells are reachable. A field that is above 0.5 in the middles of
+//! reachable cells and below in the others has its level 0.5 between them; blurring the field
+//! first makes that level smooth instead of stepped, never farther off than a neighbour's middle.
+
+use super::canvas::Point;
+use crate::workspace::SpatialShareMap;
+use contour::ContourBuilder;
+
+/// Blurs of the field.
+const PASSES: usize = 8;
+/// How far the field stays from 0.5 in the middles of cells.
+const LEAST: f64 = 0.02;
+
+/// The field in the (x, z) plane, x < 0 behind the axis.
+#[derive(Clone, Debug)]
+pub(super) struct Outline {
+    /// Middles of columns, ascending, one empty column at both ends.
+    x: Vec<f64>,
+    /// Middles of rows, ascending, one empty row at both ends.
+    z: Vec<f64>,
+    /// Row by row of z.
+    level: Vec<f64>,
+}
+
+impl Outline {
+    pub(super) fn new(map: &SpatialShareMap) -> Outline {
+        let radii: Vec<f64> = (0..map.radii()).map(|ir| map.radius(ir)).collect();
+        let heights: Vec<f64> = (0..map.heights()).map(|iz| map.height(iz)).collect();
+        let (x, source) = columns(&map.radius_edges, &radii);
+        let z = padded(&map.height_edges, &heights);
+        let mut inside = Vec::with_capacity(x.len() * z.len());
+        for row in 0..z.len() {
+            for ir in &source {
+                let cell = ir.zip(row.checked_sub(1));
+                let is_reachable =
+                    cell.is_some_and(|(ir, iz)| map.unrestricted_at(ir, iz) > 0.0);
+                inside.push(is_reachable);
+            }
+        }
+        let level = field(&inside, x.len());
+        Outline { x, z, level }
+    }
+
+    /// Whether (x, z) metres is within the outline.
+    pub(super) fn contains(&self, x: f64, z: f64) -> bool {
+        let (Some((i, s)), Some((j, t))) = (place(&self.x, x), place(&self.z, z)) else {
+            return false;
+        };
+        let at = |i, j| self.level[j * self.x.len() + i];
+        let low = at(i, j) + s * (at(i + 1, j) - at(i, j));
+        let high = at(i, j + 1) + s * (at(i + 1, j + 1) - at(i, j + 1));
+        low + t * (high - low) >= 0.5
+    }
+
+    /// The closed curves around the workspace and its holes, (x, z) in metres; first and last
+    /// points agree.
+    pub(super) fn curves(&self) -> Vec<Vec<Point>> {
+        let (columns, rows) = (self.x.len(), self.z.len());
+        let lines = ContourBuilder::new(columns, rows, true).lines(&self.level, &[0.5]);
+        let line = lines.ok().and_then(|lines| lines.into_iter().next());
+        let rings = line.map_or(Vec::new(), |line| line.into_inner().0.0);
+        // The crate counts middles of cells from 0.5.
+        let metres =
+            |at: &contour::Pt| [between(&self.x, at.x - 0.5), between(&self.z, at.y - 0.5)];
+        let curves = rings.into_iter();
+        curves.map(|ring| ring.0.iter().map(metres).collect()).collect()
+    }
+
+    /// Radii at which a horizontal plane at height `z` crosses the outline, ascending, metres.
+    pub(super) fn radii(&self, z: f64) -> Vec<f64> {
+        let Some((j, t)) = place(&self.z, z) else {
+            return Vec::new();
+        };
+        let row = |j: usize, i: usize| self.level[j * self.x.len() + i];
+        let level = |i: usize| row(j, i) + t * (row(j + 1, i) - row(j, i)) - 0.5;
+        let mut radii = Vec::new();
+        for i in 1..self.x.len() {
+            let (a, b) = (level(i - 1), level(i));
+            let x = self.x[i - 1] + a / (a - b) * (self.x[i] - self.x[i - 1]);
+            if (a < 0.0) != (b < 0.0) && x > 0.0 {
+                radii.push(x);
+            }
+        }
+        radii
+    }
+}
+
+/// Middles of all columns left and right of the axis and the radius index of each.
+fn columns(edges: &[f64], radii: &[f64]) -> (Vec<f64>, Vec<Option<usize>>) {
+    let mut right: Vec<(f64, Option<usize>)> = Vec::new();
+    if let ([first, ..], [middle, ..]) = (edges, radii)
+        && *first > 0.0
+    {
+        // A hole around the axis.
+        right.push(((2.0 * first - middle).max(0.0), None));
+    }
+    right.extend(radii.iter().enumerate().map(|(ir, r)| (*r, Some(ir))));
+    if let (Some(last), Some(middle)) = (edges.last(), radii.last()) {
+        right.push((2.0 * last - middle, None));
+    }
+    let left = right.iter().rev().filter(|(r, _)| *r > 0.0);
+    left.map(|(r, ir)| (-r, *ir)).chain(right.iter().copied()).unzip()
+}
+
+/// The middles with one more at both ends, as far beyond the edge.
+fn padded(edges: &[f64], middles: &[f64]) -> Vec<f64> {
+    let (Some(low), Some(high)) = (edges.first(), edges.last()) else {
+        return Vec::new();
+    };
+    let (Some(first), Some(last)) = (middles.first(), middles.last()) else {
+        return Vec::new();
+    };
+    let ends = [2.0 * low - first, 2.0 * high - last];
+    [&ends[..1], middles, &ends[1..]].concat()
+}
+
+/// The blurred field, still above 0.5 in `inside` and below elsewhere.
+fn field(inside: &[bool], columns: usize) -> Vec<f64> {
+    let mut level: Vec<f64> = inside.iter().map(|is| f64::from(u8::from(*is))).collect();
+    for _ in 0..PASSES {
+        level = blurred(&blurred(&level, columns, 1), columns, columns);
+    }
+    let kept = level.iter().zip(inside);
+    kept.map(|(value, is_inside)| match is_inside {
+        true => value.max(0.5 + LEAST),
+        false => value.min(0.5 - LEAST),
+    })
+    .collect()
+}
+
+/// Each value averaged with its neighbours `step` apart, weights 1 2 1; nothing lies beyond.
+fn blurred(level: &[f64], columns: usize, step: usize) -> Vec<f64> {
+    let value = |k: usize| {
+        let (place, count) = match step {
+            1 => (k % columns, columns),
+            _ => (k / columns, level.len() / columns),
+        };
+        let before = if place > 0 { level[k - step] } else { 0.0 };
+        let after = if place + 1 < count { level[k + step] } else { 0.0 };
+        0.25 * (before + 2.0 * level[k] + after)
+    };
+    (0..level.len()).map(value).collect()
+}
+
+/// The interval of `middles` that holds `value` and how far along.
+fn place(middles: &[f64], value: f64) -> Option<(usize, f64)> {
+    let k = middles.partition_point(|m| *m <= value).checked_sub(1)?;
+    let next = middles.get(k + 1)?;
+    Some((k, (value - middles[k]) / (next - middles[k])))
+}
+
+/// The value at a fractional index.
+fn between(middles: &[f64], index: f64) -> f64 {
+    let last = middles.len().saturating_sub(2);
+    let k = (index.max(0.0) as usize).min(last);
+    match (middles.get(k), middles.get(k + 1)) {
+        (Some(low), Some(high)) => low + (index - k as f64) * (high - low),
+        _ => 0.0,
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn map(edges: [f64; 2], inside: impl Fn(f64, f64) -> bool) -> SpatialShareMap {
+        let count = 40;
+        let edge = |k: usize| edges[0] + (edges[1] - edges[0]) * k as f64 / count as f64;
+        let mut map = SpatialShareMap {
+            radius_edges: (0..=count).map(edge).collect(),
+            height_edges: (0..=count).map(|k| -1.0 + 0.05 * k as f64).collect(),
+            azimuths: 1,
+            ..SpatialShareMap::default()
+        };
+        for ir in 0..count {
+            for iz in 0..count {
+                let is = inside(map.radius(ir), map.height(iz));
+                map.unrestricted.push(f32::from(u8::from(is)));
+            }
+        }
+        map
+    }
+
+    #[test]
+    fn a_ball_is_round() {
+        let outline = Outline::new(&map([0.0, 1.0], |r, z| r.hypot(z) < 0.8));
+        let curves = outline.curves();
+        assert_eq!(curves.len(), 1);
+        assert_eq!(curves[0].first(), curves[0].last());
+        for [x, z] in &curves[0] {
+            // Cells are 0.025 by 0.05 large.
+            assert!((x.hypot(*z) - 0.8).abs() < 0.03, "{x} {z}");
+        }
+        let radii = outline.radii(0.0);
+        assert!(radii.len() == 1 && (radii[0] - 0.8).abs() < 0.02, "{radii:?}");
+        assert!(outline.contains(-0.5, 0.5) && !outline.contains(0.6, 0.6));
+    }
+
+    #[test]
+    fn holes_and_halves_are_closed_curves() {
+        let ring = Outline::new(&map([0.0, 1.0], |r, z| (0.4..0.8).contains(&r.hypot(z))));
+        assert_eq!((ring.curves().len(), ring.radii(0.0).len()), (2, 2));
+        // Away from the axis the workspace is cut in two halves; the grid's edge is an edge.
+        let halves = Outline::new(&map([0.2, 1.0], |_, _| true));
+        assert_eq!(halves.curves().len(), 2);
+        let [inner, outer] = halves.radii(0.0)[..] else { panic!() };
+        assert!((inner - 0.2).abs() < 1e-9 && (outer - 1.0).abs() < 1e-9);
+    }
+
+    #[test]
+    fn single_cells_and_nothing() {
+        let single = map([0.0, 1.0], |r, z| (r - 0.5125).hypot(z - 0.025) < 1e-6);
+        assert_eq!(Outline::new(&single).curves().len(), 2);
+        let nothing = Outline::new(&SpatialShareMap::default());
+        assert!(nothing.curves().is_empty() && nothing.radii(0.0).is_empty());
+        assert!(!nothing.contains(0.0, 0.0));
+    }
+}
