@@ -78,7 +78,9 @@ impl AxisBox {
         };
         let [from, to] = fitted.extent();
         let room = [size[0] - LEFT - RIGHT, size[1] - ABOVE - BELOW];
-        fitted.scale = (room[0] / (to[0] - from[0])).min(room[1] / (to[1] - from[1])).max(0.0);
+        fitted.scale = (room[0] / (to[0] - from[0]))
+            .min(room[1] / (to[1] - from[1]))
+            .max(0.0);
         fitted.centre = [
             corner[0] + LEFT + 0.5 * room[0],
             corner[1] + ABOVE + 0.5 * room[1],
@@ -101,7 +103,13 @@ impl AxisBox {
 
     /// A corner of the box; true for the higher end of an axis.
     fn corner(&self, is_high: [bool; 3]) -> Point3 {
-        std::array::from_fn(|c| if is_high[c] { self.high[c] } else { self.low[c] })
+        std::array::from_fn(|c| {
+            if is_high[c] {
+                self.high[c]
+            } else {
+                self.low[c]
+            }
+        })
     }
 
     fn middle(&self) -> Point3 {
@@ -111,7 +119,10 @@ impl AxisBox {
     /// The point of the sheet for a point in space.
     pub(super) fn at(&self, p: Point3) -> Point {
         let [right, up, _] = self.camera.coordinates(difference(p, self.middle()));
-        [self.centre[0] + self.scale * right, self.centre[1] - self.scale * up]
+        [
+            self.centre[0] + self.scale * right,
+            self.centre[1] - self.scale * up,
+        ]
     }
 
     /// How far towards the viewer a point is, in units of the box.
@@ -196,8 +207,11 @@ impl AxisBox {
             let at = [self.at(self.middle()), self.at(sum(self.middle(), step))];
             unit([at[1][0] - at[0][0], at[1][1] - at[0][1]])
         };
-        for (axis, edge, out) in [(0, x_edge, outward(1)), (1, y_edge, outward(0)), (2, z_edge, z_out)]
-        {
+        for (axis, edge, out) in [
+            (0, x_edge, outward(1)),
+            (1, y_edge, outward(0)),
+            (2, z_edge, z_out),
+        ] {
             self.draw_axis(canvas, axis, edge, out, &axes[axis]);
         }
     }
@@ -229,7 +243,11 @@ impl AxisBox {
             canvas.stroke(&[at, away(at, 2.5)], 0.6, INK);
             let text = Label::new(&tick.label, SMALL).align(align);
             widest = widest.max(text.width());
-            text.draw(canvas, lettered(away(at, 4.5), out, SMALL));
+            let mut base = lettered(away(at, 4.5), out, SMALL);
+            // At its foot the upright axis shares a corner with another one's label.
+            let is_foot = tick.value - self.low[2] < 0.02 * (self.high[2] - self.low[2]);
+            base[1] -= if axis == 2 && is_foot { 3.5 } else { 0.0 };
+            text.draw(canvas, base);
         }
         let middle = [0.5 * (from[0] + to[0]), 0.5 * (from[1] + to[1])];
         let by = 4.5 + widest * out[0].abs() + SMALL * out[1].abs() + 4.0;
@@ -262,7 +280,11 @@ fn sum(a: Point3, b: Point3) -> Point3 {
 
 fn unit([x, y]: Point) -> Point {
     let length = x.hypot(y);
-    if length > 0.0 { [x / length, y / length] } else { [0.0, 1.0] }
+    if length > 0.0 {
+        [x / length, y / length]
+    } else {
+        [0.0, 1.0]
+    }
 }
 
 #[cfg(test)]
@@ -271,7 +293,12 @@ mod tests {
 
     fn unit_box() -> AxisBox {
         let camera = Camera::new(-0.9, 0.4);
-        AxisBox::fitting(camera, [[-1.0; 3], [1.0, 2.0, 3.0]], [10.0, 20.0], [200.0, 150.0])
+        AxisBox::fitting(
+            camera,
+            [[-1.0; 3], [1.0, 2.0, 3.0]],
+            [10.0, 20.0],
+            [200.0, 150.0],
+        )
     }
 
     #[test]
@@ -290,7 +317,12 @@ mod tests {
             let back = scene.on_plane(scene.at(p), axis, p[axis]).unwrap();
             assert!((0..3).all(|c| (back[c] - p[c]).abs() < 1e-12), "{back:?}");
         }
-        let above = AxisBox::fitting(Camera::new(0.0, 0.0), [[0.0; 3], [1.0; 3]], [0.0; 2], [99.0; 2]);
+        let above = AxisBox::fitting(
+            Camera::new(0.0, 0.0),
+            [[0.0; 3], [1.0; 3]],
+            [0.0; 2],
+            [99.0; 2],
+        );
         assert_eq!(above.on_plane([50.0, 50.0], 2, 0.2), None);
     }
 
@@ -302,7 +334,11 @@ mod tests {
         let edges = scene.edges([[-1.0; 3], [1.0, 2.0, 3.0]]);
         assert_eq!(edges.len(), 12);
         assert!(edges[..3].iter().all(|edge| scene.depth(edge[0]) == far));
-        assert!(edges[9..].iter().all(|edge| scene.depth(edge[1]) > far + 1.0));
+        assert!(
+            edges[9..]
+                .iter()
+                .all(|edge| scene.depth(edge[1]) > far + 1.0)
+        );
         // x runs to the right, z up.
         assert!(scene.at([1.0, 0.0, 0.0])[0] > scene.at([0.0; 3])[0]);
         assert!(scene.at([0.0, 0.0, 1.0])[1] < scene.at([0.0; 3])[1]);

@@ -26,7 +26,7 @@ pub struct HalfPlaneFigure<'a> {
 const MOST: [f64; 2] = [170.0, 200.0];
 
 /// A cell's number in one of the panels.
-type Value<'v> = &'v dyn Fn(usize, usize) -> f64;
+type Value<'v> = &'v (dyn Fn(usize, usize) -> f64 + Sync);
 
 impl Figure for HalfPlaneFigure<'_> {
     fn name(&self) -> &'static str {
@@ -173,24 +173,38 @@ fn draw_cells(
 ) {
     let metres = (panel.x[1] - panel.x[0]) / panel.width;
     let map = sections.map;
-    canvas.picture([panel.left, panel.top], [panel.width, panel.height], |x, y| {
-        let r = (x - panel.left).max(0.0) * metres;
-        let z = panel.y[1] - (y - panel.top) * metres;
-        let share = map.cell([r, 0.0, z]).map_or(0.0, |[ir, iz, _]| value(ir, iz));
-        let colour = match sections.outline.contains(r, z) {
-            true if share > 0.0 => scale.colour(share),
-            true => REACHABLE,
-            false => return [255; 3],
-        };
-        [colour.0, colour.1, colour.2]
-    });
+    canvas.picture(
+        [panel.left, panel.top],
+        [panel.width, panel.height],
+        |x, y| {
+            let r = (x - panel.left).max(0.0) * metres;
+            let z = panel.y[1] - (y - panel.top) * metres;
+            let share = map
+                .cell([r, 0.0, z])
+                .map_or(0.0, |[ir, iz, _]| value(ir, iz));
+            let colour = match sections.outline.contains(r, z) {
+                true if share > 0.0 => scale.colour(share),
+                true => REACHABLE,
+                false => return [255; 3],
+            };
+            [colour.0, colour.1, colour.2]
+        },
+    );
     for curve in sections.outline.curves() {
         for part in right_of_axis(&curve) {
             canvas.stroke(&panel.path(&part), 0.6, GREY);
         }
     }
-    let x_ticks = ticks::round(panel.x[0], panel.x[1], (panel.width / 28.0).max(2.0) as usize);
-    let y_ticks = ticks::round(panel.y[0], panel.y[1], (panel.height / 28.0).max(2.0) as usize);
+    let x_ticks = ticks::round(
+        panel.x[0],
+        panel.x[1],
+        (panel.width / 28.0).max(2.0) as usize,
+    );
+    let y_ticks = ticks::round(
+        panel.y[0],
+        panel.y[1],
+        (panel.height / 28.0).max(2.0) as usize,
+    );
     panel.axes(canvas, &x_ticks, &y_ticks, true);
     panel.x_label(canvas, "r (m)");
     panel.y_label(canvas, "z (m)", &y_ticks);

@@ -69,7 +69,9 @@ pub(super) fn pieces(
         for [from, to] in cut(&a, &b, &levels) {
             let is_inside = limits.is_some_and(|limits| is_within(&middle(&from, &to), limits));
             match pieces.last_mut() {
-                Some(piece) if piece.is_inside == is_inside && piece.points.last() == Some(&from) => {
+                Some(piece)
+                    if piece.is_inside == is_inside && piece.points.last() == Some(&from) =>
+                {
                     piece.points.push(to);
                 }
                 _ => pieces.push(Piece {
@@ -84,7 +86,10 @@ pub(super) fn pieces(
 
 /// A path seen in some joints (indices), in degrees within [−180, 180]; a new line starts where
 /// one of these angles passes ±180°.
-pub(super) fn wrapped<const N: usize>(points: &[Vec<f64>], joints: [usize; N]) -> Vec<Vec<[f64; N]>> {
+pub(super) fn wrapped<const N: usize>(
+    points: &[Vec<f64>],
+    joints: [usize; N],
+) -> Vec<Vec<[f64; N]>> {
     let levels = joints.map(|joint| (joint, PI));
     let mut lines: Vec<(Vec<[f64; N]>, [f64; N])> = Vec::new();
     for pair in points.windows(2) {
@@ -93,7 +98,9 @@ pub(super) fn wrapped<const N: usize>(points: &[Vec<f64>], joints: [usize; N]) -
             let turns = joints.map(|joint| inner[joint] - wrap(inner[joint]));
             let seen = |point: &[f64]| -> [f64; N] {
                 std::array::from_fn(|c| {
-                    (point[joints[c]] - turns[c]).to_degrees().clamp(-180.0, 180.0)
+                    (point[joints[c]] - turns[c])
+                        .to_degrees()
+                        .clamp(-180.0, 180.0)
                 })
             };
             // Turns are multiples of 2π up to round-off.
@@ -116,7 +123,10 @@ fn segments(curve: &ManifoldCurve, joints: usize) -> Vec<[Vec<f64>; 2]> {
         let near = |(a, b): (&f64, &f64)| a + TAU * ((b - a) / TAU).round();
         points.push(first.iter().zip(last).map(near).collect());
     }
-    points.windows(2).map(|pair| [pair[0].clone(), pair[1].clone()]).collect()
+    points
+        .windows(2)
+        .map(|pair| [pair[0].clone(), pair[1].clone()])
+        .collect()
 }
 
 /// The segment from `a` to `b` cut wherever a joint is at one of its levels modulo 2π.
@@ -134,7 +144,9 @@ fn cut(a: &[f64], b: &[f64], levels: &[(usize, f64)]) -> Vec<[Vec<f64>; 2]> {
     at.sort_by(f64::total_cmp);
     at.dedup();
     let point = |t: f64| -> Vec<f64> { a.iter().zip(b).map(|(a, b)| a + t * (b - a)).collect() };
-    at.windows(2).map(|pair| [point(pair[0]), point(pair[1])]).collect()
+    at.windows(2)
+        .map(|pair| [point(pair[0]), point(pair[1])])
+        .collect()
 }
 
 fn middle(a: &[f64], b: &[f64]) -> Vec<f64> {
@@ -146,12 +158,18 @@ mod tests {
     use super::*;
 
     fn degrees(points: &[[f64; 2]]) -> Vec<Vec<f64>> {
-        points.iter().map(|p| p.map(f64::to_radians).to_vec()).collect()
+        points
+            .iter()
+            .map(|p| p.map(f64::to_radians).to_vec())
+            .collect()
     }
 
     fn rounded(lines: Vec<Vec<[f64; 2]>>) -> Vec<Vec<[i64; 2]>> {
         let whole = |p: &[f64; 2]| p.map(|c| (c * 10.0).round() as i64);
-        lines.iter().map(|line| line.iter().map(whole).collect()).collect()
+        lines
+            .iter()
+            .map(|line| line.iter().map(whole).collect())
+            .collect()
     }
 
     #[test]
@@ -202,7 +220,12 @@ mod tests {
     #[test]
     fn odd_vertices_are_left_out() {
         let curve = ManifoldCurve {
-            points: vec![vec![f64::NAN, 0.0], vec![1e300, 0.0], vec![0.0], vec![0.0, 0.0]],
+            points: vec![
+                vec![f64::NAN, 0.0],
+                vec![1e300, 0.0],
+                vec![0.0],
+                vec![0.0, 0.0],
+            ],
             closed: true,
         };
         assert!(pieces(&curve, 2, None).is_empty());

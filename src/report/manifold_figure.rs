@@ -7,7 +7,7 @@ use super::joint_bars;
 use super::label::{LEGEND_ROW, Label, Swatch, legend, rectangle};
 use super::manifold::{CriticalPoint, ManifoldCurve, Piece, is_drawable, pieces, wrapped};
 use super::number::joint_symbol;
-use super::panel::{BOTTOM, LEFT, Panel};
+use super::panel::{BOTTOM, Panel};
 use super::style::{
     BLUE, DOUBLE_COLUMN, GREEN, INK, MARGIN, ORANGE, PURPLE, SKY, SMALL, TITLE, VERMILLION, WHITE,
     translucent,
@@ -46,9 +46,11 @@ pub(super) const WIDTHS: [f64; 2] = [0.7, 1.9];
 pub(super) const BOX: RGBAColor = translucent(ORANGE, 0.25);
 
 /// Space between panels, points.
-const GAP: f64 = 12.0;
+const GAP: f64 = 24.0;
 /// Space above a panel for its title, points.
-const HEAD: f64 = 13.0;
+const HEAD: f64 = 18.0;
+/// Space left of the panels, points.
+pub(super) const SIDE: f64 = 40.0;
 
 impl Figure for ManifoldFigure<'_> {
     fn name(&self) -> &'static str {
@@ -101,7 +103,12 @@ impl Figure for ManifoldFigure<'_> {
     }
 
     fn table(&self) -> Table {
-        table(self.curves, self.critical_points, self.crossings, self.joint_ranges.len())
+        table(
+            self.curves,
+            self.critical_points,
+            self.crossings,
+            self.joint_ranges.len(),
+        )
     }
 }
 
@@ -127,7 +134,7 @@ impl ManifoldFigure<'_> {
     /// Side of a square panel, points.
     fn side(&self) -> f64 {
         let columns = self.columns() as f64;
-        let room = DOUBLE_COLUMN - LEFT - MARGIN - 4.0 - (columns - 1.0) * GAP;
+        let room = DOUBLE_COLUMN - SIDE - MARGIN - 4.0 - (columns - 1.0) * GAP;
         (room / columns).min(170.0)
     }
 
@@ -150,17 +157,19 @@ impl ManifoldFigure<'_> {
     fn bars_top(&self) -> f64 {
         let rows = self.rows() as f64;
         let below = if self.rows() > 0 { BOTTOM + 2.0 } else { 0.0 };
-        self.head() + rows * (self.side() + HEAD) + below + HEAD
+        self.head() + rows * (self.side() + HEAD) + below + HEAD - 2.0
     }
 
     fn draw_legend(&self, canvas: &mut Canvas) {
         let entries = self.entries();
-        let entries: Vec<(Swatch, &str)> =
-            entries.iter().map(|(swatch, text)| (*swatch, text.as_str())).collect();
+        let entries: Vec<(Swatch, &str)> = entries
+            .iter()
+            .map(|(swatch, text)| (*swatch, text.as_str()))
+            .collect();
         let rows = entries.len().div_ceil(LEGEND_COLUMNS) as f64;
-        let top = self.head() - (rows - 0.5) * LEGEND_ROW - 1.0;
-        let width = DOUBLE_COLUMN - LEFT - MARGIN;
-        legend(canvas, [LEFT, top], width, LEGEND_COLUMNS, &entries);
+        let top = self.head() - (rows - 0.5) * LEGEND_ROW + 1.0;
+        let width = DOUBLE_COLUMN - SIDE - MARGIN;
+        legend(canvas, [SIDE, top], width, LEGEND_COLUMNS, &entries);
     }
 
     /// The panel of joint `joint` (index) against joint 1.
@@ -169,7 +178,7 @@ impl ManifoldFigure<'_> {
         let (column, row) = (place % columns, place / columns);
         let side = self.side();
         let panel = Panel {
-            left: LEFT + column as f64 * (side + GAP),
+            left: SIDE + column as f64 * (side + GAP),
             top: self.head() + row as f64 * (side + HEAD) + HEAD,
             width: side,
             height: side,
@@ -177,7 +186,9 @@ impl ManifoldFigure<'_> {
             y: [-180.0, 180.0],
         };
         let name = format!("{} against {}", joint_symbol(joint + 1), joint_symbol(1));
-        Label::new(&name, SMALL).bold().draw(canvas, [panel.left, panel.top - 4.5]);
+        Label::new(&name, SMALL)
+            .bold()
+            .draw(canvas, [panel.left, panel.top - 4.5]);
         let quarters = quarters();
         panel.grid(canvas, &quarters);
         upright_grid(canvas, &panel, &quarters);
@@ -188,7 +199,11 @@ impl ManifoldFigure<'_> {
         });
         self.draw_marks(canvas, &panel, joint);
         let is_last = place + columns >= self.panels();
-        let x_ticks = if is_last { quarters.clone() } else { unlabelled(&quarters) };
+        let x_ticks = if is_last {
+            quarters.clone()
+        } else {
+            unlabelled(&quarters)
+        };
         panel.axes(canvas, &x_ticks, &quarters, column == 0);
         if is_last {
             panel.x_label(canvas, &format!("{} (deg)", joint_symbol(1)));
@@ -235,7 +250,10 @@ pub(super) fn entries(curves: usize, marks: &Marks) -> Vec<(Swatch, String)> {
     let mut entries = Vec::new();
     if curves <= NAMED {
         for k in 0..curves {
-            entries.push((Swatch::Line(COLOURS[k % COLOURS.len()]), format!("manifold {}", k + 1)));
+            entries.push((
+                Swatch::Line(COLOURS[k % COLOURS.len()]),
+                format!("manifold {}", k + 1),
+            ));
         }
     } else {
         let text = format!("{curves} self-motion manifolds");
@@ -344,13 +362,22 @@ pub(super) fn table(
         table.rows.push(row);
     };
     for (k, curve) in curves.iter().enumerate() {
-        let kind = if curve.closed { "closed curve" } else { "open curve" };
+        let kind = if curve.closed {
+            "closed curve"
+        } else {
+            "open curve"
+        };
         for (vertex, point) in curve.points.iter().enumerate() {
             push(kind, k + 1, Some(vertex + 1), point);
         }
     }
     for point in critical_points {
-        push("critical point of joint", point.joint, None, &point.configuration);
+        push(
+            "critical point of joint",
+            point.joint,
+            None,
+            &point.configuration,
+        );
     }
     for (k, configuration) in crossings.iter().enumerate() {
         push("crossing", k + 1, None, configuration);

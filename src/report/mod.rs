@@ -2,7 +2,7 @@
 //!
 //! This room draws result types and never computes results: what a [`Report`] holds comes ready
 //! from the study. Every figure is a [`Figure`]: a drawing in printed points that the same code
-//! puts on a PNG (1600 pixels wide) or an SVG, and the table behind it as CSV. Files are written
+//! puts on a PNG (1600 pixels wide for one column of a paper) or an SVG, and the table behind it as CSV. Files are written
 //! whole or not at all, and the same input gives the same bytes.
 //!
 //! [`write_report`] writes everything; [`write_figure`], [`write_json`] and [`write_text`] write
@@ -21,9 +21,11 @@ mod label;
 mod limits_figure;
 mod manifold;
 mod manifold_figure;
+mod manifold_view;
 mod number;
 mod outline;
 mod panel;
+mod points;
 mod polar;
 mod render;
 mod result_files;
@@ -55,7 +57,9 @@ pub use html::{InlineFigure, page};
 pub use limits_figure::LimitsFigure;
 pub use manifold::{CriticalPoint, ManifoldCurve};
 pub use manifold_figure::ManifoldFigure;
+pub use manifold_view::ManifoldFigure3d;
 pub use number::{degrees, estimate, percentage, plain, unit, with_error};
+pub use points::{write_curves, write_points};
 pub use result_files::{write_bytes, write_json, write_text};
 pub use robot_figure::RobotFigure;
 pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};

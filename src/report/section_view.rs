@@ -14,7 +14,7 @@ const AZIMUTH: f64 = -0.95;
 const ELEVATION: f64 = 0.45;
 
 /// How much of what lies behind the grey of the unrestricted workspace is hidden.
-const VEIL: f64 = 0.5;
+const VEIL: f64 = 0.4;
 
 /// Sections in a box.
 pub(super) struct SectionView<'a> {
@@ -75,7 +75,7 @@ impl<'a> SectionView<'a> {
 
     /// What the line of sight through a point of the sheet meets, nearest first; with its depth.
     fn hits(&self, sheet: Point) -> SmallVec<[(f64, Layer); 3]> {
-        let mut hits = SmallVec::new();
+        let mut hits: SmallVec<[(f64, Layer); 3]> = SmallVec::new();
         for plane in self.planes {
             let Some(p) = self.scene.on_plane(sheet, plane.axis, plane.value) else {
                 continue;

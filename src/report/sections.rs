@@ -127,7 +127,12 @@ fn ranges(map: &SpatialShareMap) -> (f64, [f64; 2]) {
             found = Some((most.max(edge), [z[0].min(low), z[1].max(high)]));
         }
     }
-    let whole = || Some((*map.radius_edges.last()?, [*map.height_edges.first()?, *map.height_edges.last()?]));
+    let whole = || {
+        Some((
+            *map.radius_edges.last()?,
+            [*map.height_edges.first()?, *map.height_edges.last()?],
+        ))
+    };
     let (reach, z) = found.or_else(whole).unwrap_or((1.0, [0.0, 1.0]));
     let is_drawable = |v: f64| v.is_finite() && v.abs() < 1e150;
     if !(is_drawable(reach) && reach > 0.0 && z.iter().all(|v| is_drawable(*v)) && z[0] < z[1]) {

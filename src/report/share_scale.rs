@@ -109,7 +109,10 @@ mod tests {
     #[test]
     fn the_top_is_round_and_holds_the_most() {
         let top = |most| ShareScale::fitting(most, Palette::Viridis).top;
-        assert_eq!([0.6, 0.5, 0.03, 0.0, 1e-9].map(top), [1.0, 0.5, 0.05, 1.0, 0.001]);
+        assert_eq!(
+            [0.6, 0.5, 0.03, 0.0, 1e-9].map(top),
+            [1.0, 0.5, 0.05, 1.0, 0.001]
+        );
         assert_eq!(top(f64::NAN), 1.0);
     }
 

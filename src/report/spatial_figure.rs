@@ -50,7 +50,8 @@ impl Figure for SpatialWorkspaceFigure<'_> {
         };
         format!(
             "{what} (colour) within the unrestricted workspace (grey) of a spatial task. \
-             (a) Three cross-sections in space, the front quarter of the horizontal one cut away; \
+             (a) Three cross-sections in space, the front quarter of the horizontal one cut away (colours \
+             behind grey look paler); \
              (b) the horizontal section at z = {} m, where the fault-tolerant workspace is \
              largest; (c, d) sections through the axis of joint 1, the z axis.",
             rounded(sections.height, -2)
@@ -76,10 +77,28 @@ impl Figure for SpatialWorkspaceFigure<'_> {
         let [horizontal, xz, yz] = sections.planes();
         let height = rounded(sections.height, -2);
         let name = format!("(b) x–y section, z = {height} m");
-        draw_flat(canvas, &sections, horizontal, &layout.panel(&sections, 1, 0), &name);
+        draw_flat(
+            canvas,
+            &sections,
+            horizontal,
+            &layout.panel(&sections, 1, 0),
+            &name,
+        );
         let names = ["(c) x–z section, y = 0", "(d) y–z section, x = 0"];
-        draw_flat(canvas, &sections, xz, &layout.panel(&sections, 0, 1), names[0]);
-        draw_flat(canvas, &sections, yz, &layout.panel(&sections, 1, 1), names[1]);
+        draw_flat(
+            canvas,
+            &sections,
+            xz,
+            &layout.panel(&sections, 0, 1),
+            names[0],
+        );
+        draw_flat(
+            canvas,
+            &sections,
+            yz,
+            &layout.panel(&sections, 1, 1),
+            names[1],
+        );
         let bottom = layout.top[1] + layout.heights[1];
         sections.scale.draw_bar(
             canvas,
@@ -183,7 +202,10 @@ impl SpatialWorkspaceFigure<'_> {
         panel_title(canvas, [LEFT, layout.top[0]], "(a) sections in space");
         let right = layout.left[1] - LEFT - 4.0;
         let corner = [MARGIN, layout.top[0]];
-        let size = [right - MARGIN, layout.top[1] - PANEL_TITLE - 6.0 - layout.top[0]];
+        let size = [
+            right - MARGIN,
+            layout.top[1] - PANEL_TITLE - 6.0 - layout.top[0],
+        ];
         SectionView::new(sections, corner, size).draw(canvas);
     }
 }
@@ -212,16 +234,20 @@ pub(super) fn panel_title(canvas: &mut Canvas, corner: Point, text: &str) {
 fn draw_flat(canvas: &mut Canvas, sections: &Sections, plane: Plane, panel: &Panel, name: &str) {
     panel_title(canvas, [panel.left, panel.top], name);
     let scale = (panel.x[1] - panel.x[0]) / panel.width;
-    canvas.picture([panel.left, panel.top], [panel.width, panel.height], |x, y| {
-        let right = panel.x[0] + (x - panel.left) * scale;
-        let up = panel.y[1] - (y - panel.top) * scale;
-        let colour = match sections.layer_at(plane.lift([right, up])) {
-            Layer::Outside => return [255; 3],
-            Layer::Reachable => REACHABLE,
-            Layer::Share(share) => sections.scale.colour(share),
-        };
-        [colour.0, colour.1, colour.2]
-    });
+    canvas.picture(
+        [panel.left, panel.top],
+        [panel.width, panel.height],
+        |x, y| {
+            let right = panel.x[0] + (x - panel.left) * scale;
+            let up = panel.y[1] - (y - panel.top) * scale;
+            let colour = match sections.layer_at(plane.lift([right, up])) {
+                Layer::Outside => return [255; 3],
+                Layer::Reachable => REACHABLE,
+                Layer::Share(share) => sections.scale.colour(share),
+            };
+            [colour.0, colour.1, colour.2]
+        },
+    );
     for curve in sections.curves(plane) {
         canvas.stroke(&panel.path(&curve), 0.6, GREY);
     }

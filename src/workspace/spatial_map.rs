@@ -95,7 +95,9 @@ impl SpatialShareMap {
     pub fn fullest_height(&self) -> Option<usize> {
         let area = |ir: usize| self.radius_edges[ir + 1].powi(2) - self.radius_edges[ir].powi(2);
         let integral = |iz: usize| -> f64 {
-            (0..self.radii()).map(|ir| area(ir) * self.mean(ir, iz)).sum()
+            (0..self.radii())
+                .map(|ir| area(ir) * self.mean(ir, iz))
+                .sum()
         };
         let mut best = None;
         for (iz, value) in (0..self.heights()).map(|iz| (iz, integral(iz))) {
@@ -109,9 +111,15 @@ impl SpatialShareMap {
     /// Whether edges ascend and are finite, radii are not negative, all cells have their numbers
     /// and these lie in [0, 1]; otherwise what is wrong.
     pub fn check(&self) -> Result<(), String> {
-        for (name, edges) in [("radius", &self.radius_edges), ("height", &self.height_edges)] {
+        for (name, edges) in [
+            ("radius", &self.radius_edges),
+            ("height", &self.height_edges),
+        ] {
             if edges.len() < 2 {
-                return Err(format!("{} {name} edges where at least 2 are needed", edges.len()));
+                return Err(format!(
+                    "{} {name} edges where at least 2 are needed",
+                    edges.len()
+                ));
             }
             if !edges.iter().all(|edge| edge.is_finite()) {
                 return Err(format!("a {name} edge is not finite"));
@@ -146,7 +154,9 @@ fn number(value: Option<&f32>) -> f64 {
 
 /// Which of the half-open intervals between `edges` holds `value`.
 fn interval(edges: &[f64], value: f64) -> Option<usize> {
-    let index = edges.partition_point(|edge| *edge <= value).checked_sub(1)?;
+    let index = edges
+        .partition_point(|edge| *edge <= value)
+        .checked_sub(1)?;
     (index + 1 < edges.len()).then_some(index)
 }
 
