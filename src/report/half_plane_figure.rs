@@ -68,7 +68,11 @@ impl Figure for HalfPlaneFigure<'_> {
         let title = Label::new(&self.title, TITLE).bold().align(HPos::Center);
         title.draw_within(canvas, [0.5 * width, 12.0], width - 2.0 * MARGIN);
         let fault_tolerant = |ir: usize, iz: usize| self.map.mean(ir, iz);
-        let unrestricted = |ir: usize, iz: usize| self.map.unrestricted_at(ir, iz);
+        // The outline cuts corners of cells out of reach; they take a neighbour's colour.
+        let unrestricted = |ir: usize, iz: usize| match self.map.unrestricted_at(ir, iz) {
+            share if share > 0.0 => share,
+            _ => least_around(self.map, ir, iz),
+        };
         let texts = self.texts();
         let values: [Value; 2] = [&fault_tolerant, &unrestricted];
         let mut left = LEFT;
@@ -124,7 +128,7 @@ impl HalfPlaneFigure<'_> {
             all.map(|(ir, iz)| value(ir, iz)).fold(0.0, f64::max)
         };
         [
-            ShareScale::fitting(most(&|ir, iz| map.mean(ir, iz)), Palette::Viridis),
+            ShareScale::fitting(most(&|ir, iz| map.mean(ir, iz)), Palette::of(map)),
             ShareScale::fitting(most(&|ir, iz| map.unrestricted_at(ir, iz)), Palette::Blues),
         ]
     }
@@ -154,6 +158,14 @@ impl HalfPlaneFigure<'_> {
             y: sections.z,
         }
     }
+}
+
+/// The least reachable share above 0 of the cells around a cell.
+fn least_around(map: &SpatialShareMap, ir: usize, iz: usize) -> f64 {
+    let range = |k: usize| k.saturating_sub(1)..=k + 1;
+    let shares = range(ir).flat_map(|ir| range(iz).map(move |iz| map.unrestricted_at(ir, iz)));
+    let least = shares.filter(|share| *share > 0.0).min_by(f64::total_cmp);
+    least.unwrap_or(0.0)
 }
 
 /// Width and height of a panel, points, with equal scales on both axes.

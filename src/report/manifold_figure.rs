@@ -267,7 +267,7 @@ pub(super) fn entries(curves: usize, marks: &Marks) -> Vec<(Swatch, String)> {
         entries.push((Swatch::Dot(INK), "critical point".into()));
     }
     if !marks.crossings.is_empty() {
-        entries.push((Swatch::Cross(INK), "enters or leaves the limits".into()));
+        entries.push((Swatch::Cross(INK), "crosses a limit".into()));
     }
     entries
 }

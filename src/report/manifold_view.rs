@@ -55,7 +55,8 @@ struct Stroke {
     path: Vec<Point>,
     width: f64,
     colour: RGBAColor,
-    /// The part that is set off from what it passes in front of.
+    /// The part that is set off from what it passes in front of; not the ends of a line, which
+    /// another one may go on.
     rim: Vec<Point>,
 }
 
@@ -276,7 +277,11 @@ fn parts(scene: &AxisBox, line: &[Point3], width: f64, colour: RGBAColor) -> Vec
             path: path(&sheet, &along, [from - OVERLAP, to + OVERLAP]),
             width,
             colour,
-            rim: path(&sheet, &along, [from, to]),
+            rim: path(
+                &sheet,
+                &along,
+                [from.max(OVERLAP), to.min(length - OVERLAP)],
+            ),
         }
     };
     (0..count).map(part).collect()
@@ -304,6 +309,9 @@ fn between<const N: usize>(points: &[[f64; N]], (k, t): (usize, f64)) -> [f64; N
 
 /// The part of a path between two lengths.
 fn path(sheet: &[Point], along: &[f64], [from, to]: [f64; 2]) -> Vec<Point> {
+    if from > to {
+        return Vec::new();
+    }
     let (start, end) = (at_length(along, from), at_length(along, to));
     let mut points = vec![between(sheet, start)];
     points.extend(&sheet[start.0 + 1..=end.0]);

@@ -5,7 +5,7 @@
 //! first makes that level smooth instead of stepped, never farther off than a neighbour's middle.
 
 use super::canvas::Point;
-use crate::workspace::SpatialShareMap;
+use crate::workspace::{SpatialShareMap, interval};
 use contour::ContourBuilder;
 
 /// Blurs of the field.
@@ -150,9 +150,8 @@ fn blurred(level: &[f64], columns: usize, step: usize) -> Vec<f64> {
 
 /// The interval of `middles` that holds `value` and how far along.
 fn place(middles: &[f64], value: f64) -> Option<(usize, f64)> {
-    let k = middles.partition_point(|m| *m <= value).checked_sub(1)?;
-    let next = middles.get(k + 1)?;
-    Some((k, (value - middles[k]) / (next - middles[k])))
+    let k = interval(middles, value)?;
+    Some((k, (value - middles[k]) / (middles[k + 1] - middles[k])))
 }
 
 /// The value at a fractional index.

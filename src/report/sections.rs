@@ -67,7 +67,7 @@ impl Sections<'_> {
         Sections {
             map,
             outline: Outline::new(map),
-            scale: ShareScale::fitting(f64::from(most), Palette::Viridis),
+            scale: ShareScale::fitting(f64::from(most), Palette::of(map)),
             layer,
             height: layer.map_or(0.5 * (z[0] + z[1]), |iz| map.height(iz)),
             reach,

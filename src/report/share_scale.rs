@@ -4,6 +4,7 @@ use super::canvas::{Canvas, Point};
 use super::label::{Label, rectangle};
 use super::style::{HALF_CAPITAL, INK, NORMAL, SMALL};
 use super::ticks;
+use crate::workspace::SpatialShareMap;
 use plotters::prelude::ViridisRGB;
 use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBAColor};
@@ -11,10 +12,21 @@ use plotters::style::{Color, RGBAColor};
 /// Colours of one kind of share.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Palette {
-    /// Fault-tolerant shares.
+    /// Shares of orientations.
     Viridis,
-    /// Reachable shares, light to dark.
+    /// Shares of cells and reachable shares, light to dark.
     Blues,
+}
+
+impl Palette {
+    /// The palette of a map's fault-tolerant shares. Positions are tolerant or not, and blue as in
+    /// the planar figure.
+    pub(super) fn of(map: &SpatialShareMap) -> Palette {
+        match map.orientations {
+            true => Palette::Viridis,
+            false => Palette::Blues,
+        }
+    }
 }
 
 /// Shares from 0 to `top` as colours.
@@ -29,8 +41,8 @@ const WIDTH: f64 = 8.0;
 
 /// Colours of [`Palette::Blues`] at equal distances.
 const BLUES: [[f64; 3]; 4] = [
-    [222.0, 235.0, 245.0],
-    [125.0, 190.0, 230.0],
+    [200.0, 224.0, 242.0],
+    [115.0, 183.0, 226.0],
     [20.0, 115.0, 180.0],
     [5.0, 45.0, 90.0],
 ];

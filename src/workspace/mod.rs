@@ -10,3 +10,4 @@ pub use limits::{ArtificialLimits, FailureSet, JointLimit};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
 pub use size::{Estimate, WorkspaceSizes};
 pub use spatial_map::SpatialShareMap;
+pub(crate) use spatial_map::interval;

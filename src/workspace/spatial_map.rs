@@ -152,8 +152,17 @@ fn number(value: Option<&f32>) -> f64 {
     value.map_or(0.0, |v| if v.is_finite() { f64::from(*v) } else { 0.0 })
 }
 
-/// Which of the half-open intervals between `edges` holds `value`.
-fn interval(edges: &[f64], value: f64) -> Option<usize> {
+/// Which of the half-open intervals between ascending `edges` holds `value`. Fast where all are of
+/// one width.
+pub(crate) fn interval(edges: &[f64], value: f64) -> Option<usize> {
+    let ([first, ..], [.., last]) = (edges, edges) else {
+        return None;
+    };
+    let guess = ((value - first) / (last - first) * (edges.len() - 1) as f64) as usize;
+    let holds = |k: usize| Some(*edges.get(k)? <= value && value < *edges.get(k + 1)?);
+    if holds(guess) == Some(true) {
+        return Some(guess);
+    }
     let index = edges
         .partition_point(|edge| *edge <= value)
         .checked_sub(1)?;
@@ -198,6 +207,14 @@ mod tests {
         assert_eq!(map.share_at(0, 2, 0) + map.share_at(2, 0, 0), 0.0);
         assert_eq!(map.share_at(0, 0, 4) + map.unrestricted_at(0, 2), 0.0);
         assert_eq!(SpatialShareMap::default().sample([0.0; 3]), None);
+    }
+
+    #[test]
+    fn intervals_may_differ_in_width() {
+        let edges = [0.0, 0.1, 0.2, 5.0];
+        let found = [-0.1, 0.0, 0.15, 0.2, 4.9, 5.0].map(|value| interval(&edges, value));
+        assert_eq!(found, [None, Some(0), Some(1), Some(2), Some(2), None]);
+        assert_eq!([interval(&[], 0.0), interval(&[1.0], 1.0)], [None, None]);
     }
 
     #[test]
