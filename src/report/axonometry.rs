@@ -101,6 +101,15 @@ impl AxisBox {
         extent
     }
 
+    /// About how many ticks an axis has room for.
+    pub(super) fn room(&self, axis: usize) -> usize {
+        let mut end = self.low;
+        end[axis] = self.high[axis];
+        let [from, to] = [self.low, end].map(|p| self.at(p));
+        let length = (to[0] - from[0]).hypot(to[1] - from[1]);
+        (length / 24.0).clamp(1.0, 5.0) as usize
+    }
+
     /// A corner of the box; true for the higher end of an axis.
     fn corner(&self, is_high: [bool; 3]) -> Point3 {
         std::array::from_fn(|c| {
@@ -245,7 +254,7 @@ impl AxisBox {
             widest = widest.max(text.width());
             let mut base = lettered(away(at, 4.5), out, SMALL);
             // At its foot the upright axis shares a corner with another one's label.
-            let is_foot = tick.value - self.low[2] < 0.02 * (self.high[2] - self.low[2]);
+            let is_foot = tick.value - self.low[2] < 0.01 * (self.high[2] - self.low[2]);
             base[1] -= if axis == 2 && is_foot { 3.5 } else { 0.0 };
             text.draw(canvas, base);
         }

@@ -44,14 +44,14 @@ impl<'a> SectionView<'a> {
         let size = [to[0] - from[0], to[1] - from[1]];
         canvas.picture(from, size, |x, y| self.colour([x, y]));
         let (reach, z) = (self.sections.reach, self.sections.z);
-        let axis = |label, [low, high]: [f64; 2], count| Axis {
+        let axis = |label, axis, [low, high]: [f64; 2]| Axis {
             label,
-            ticks: ticks::round(low, high, count),
+            ticks: ticks::round(low, high, self.scene.room(axis)),
         };
         let axes = [
-            axis("x (m)", [-reach, reach], 4),
-            axis("y (m)", [-reach, reach], 4),
-            axis("z (m)", z, 4),
+            axis("x (m)", 0, [-reach, reach]),
+            axis("y (m)", 1, [-reach, reach]),
+            axis("z (m)", 2, z),
         ];
         for line in self.scene.back(&axes) {
             self.draw_hidden(canvas, &line, 0.4, super::style::GRID);

@@ -258,10 +258,9 @@ fn draw_flat(canvas: &mut Canvas, sections: &Sections, plane: Plane, panel: &Pan
     if sections.is_empty() {
         panel.remark(canvas, "W_F is empty");
     }
-    let x_ticks = ticks::round(panel.x[0], panel.x[1], 5);
-    let per_point = (x_ticks.len().max(2) as f64 / panel.width).min(0.1);
-    let count = (panel.height * per_point).round().max(2.0) as usize;
-    let y_ticks = ticks::round(panel.y[0], panel.y[1], count);
+    let count = |length: f64| (length / 36.0).round().max(2.0) as usize;
+    let x_ticks = ticks::round(panel.x[0], panel.x[1], count(panel.width));
+    let y_ticks = ticks::round(panel.y[0], panel.y[1], count(panel.height));
     panel.axes(canvas, &x_ticks, &y_ticks, true);
     let labels = ["x (m)", "y (m)", "z (m)"];
     let [right, up] = plane.across();
