@@ -11,6 +11,7 @@ use base64::{Engine, engine::general_purpose::STANDARD};
 use plotters::prelude::{Color, DrawingBackend, FontTransform, SVGBackend};
 use plotters::style::text_anchor::{HPos, Pos, VPos};
 use plotters::style::{FontDesc, FontFamily, FontStyle, RGBAColor, ShapeStyle, TextStyle};
+use rayon::prelude::*;
 
 /// Units of the drawing per printed point: 3200 units for a column of 8.5 cm. A PNG has half as
 /// many pixels.
@@ -183,21 +184,20 @@ impl<'a> Canvas<'a> {
         &mut self,
         corner: Point,
         size: Point,
-        colour: impl Fn(f64, f64) -> [u8; 3],
+        colour: impl Fn(f64, f64) -> [u8; 3] + Sync,
     ) {
         let start = corner.map(|c| 2.0 * (0.5 * c * UNITS_PER_POINT).round().max(0.0));
         let [width, height] =
             size.map(|s| (0.5 * s * UNITS_PER_POINT).round().clamp(1.0, 4e3) as u32);
-        let mut pixels = Vec::with_capacity(4 * (width * height) as usize);
-        for row in 0..height {
-            for column in 0..width {
-                let unit = [
-                    start[0] + f64::from(2 * column),
-                    start[1] + f64::from(2 * row),
-                ];
-                pixels.extend(mean_colour(unit, &colour));
-            }
-        }
+        let pixel = |k: u32| {
+            let unit = [
+                start[0] + f64::from(2 * (k % width)),
+                start[1] + f64::from(2 * (k / width)),
+            ];
+            mean_colour(unit, &colour)
+        };
+        let pixels: Vec<[u8; 4]> = (0..width * height).into_par_iter().map(pixel).collect();
+        let pixels = pixels.into_flattened();
         let outcome = self.place(start, (width, height), pixels);
         if let (Err(error), None) = (outcome, &self.error) {
             self.error = Some(error);

@@ -16,6 +16,9 @@ pub enum ReportError {
     /// The drawing library refused.
     #[error("cannot draw: {0}")]
     Draw(String),
+    /// A point cloud cannot be written as VTK.
+    #[error("cannot write points: {0}")]
+    Points(#[from] vtkio::Error),
     /// A table cannot be written as CSV.
     #[error("cannot write a table: {0}")]
     Table(#[from] csv::Error),

@@ -11,14 +11,14 @@ use std::path::{Path, PathBuf};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Format {
-    /// Bitmap, 1600 pixels wide.
+    /// Bitmap, 1600 pixels wide for one column of a paper.
     Png,
     /// Vector graphics.
     Svg,
 }
 
 /// A figure of a report.
-pub trait Figure {
+pub trait Figure: std::fmt::Debug {
     /// Stem of its files, as in `workspace.png`.
     fn name(&self) -> &'static str;
     /// A sentence that tells what is to be seen, as plain text.

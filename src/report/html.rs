@@ -1,6 +1,7 @@
 //! `report.html`: one page that needs no other file.
 
 use super::number::{estimate, exact_degrees, joint_symbol, percentage, rounded, unit};
+use super::points::POINTS;
 use super::sizes_figure::named;
 use super::write::Report;
 use crate::workspace::JointLimit;
@@ -14,6 +15,8 @@ pub struct InlineFigure {
     pub png: Vec<u8>,
     /// Caption and alternative text, plain.
     pub caption: String,
+    /// Whether it takes all of the page's width: two columns of a paper.
+    pub is_wide: bool,
 }
 
 const CSS: &str = "
@@ -53,6 +56,9 @@ pub fn page(report: &Report, figures: &[InlineFigure]) -> String {
                 (sizes(report))
                 h2 { "Figures" }
                 div.figures { @for figure in figures { (inlined(figure)) } }
+                @if report.points.is_some() {
+                    p { "The shares of all cells as points for ParaView: " code { (POINTS) } "." }
+                }
                 h2 { "Study as run" }
                 pre { (report.study_toml) }
                 h2 { "Provenance" }
@@ -153,7 +159,7 @@ fn sizes(report: &Report) -> Markup {
 fn inlined(figure: &InlineFigure) -> Markup {
     let data = STANDARD.encode(&figure.png);
     html! {
-        figure {
+        figure style=[figure.is_wide.then_some("flex-basis:100%;max-width:none")] {
             img src={ "data:image/png;base64," (data) } alt=(figure.caption);
             figcaption { (figure.caption) }
         }

@@ -117,6 +117,10 @@ pub(super) enum Swatch {
     /// A link with a joint.
     Arm(RGBAColor),
     Dashed(RGBAColor),
+    /// A heavy line.
+    Thick(RGBAColor),
+    Dot(RGBAColor),
+    Cross(RGBAColor),
 }
 
 /// Height of one row of a legend, points.
@@ -164,6 +168,13 @@ fn draw_swatch(canvas: &mut Canvas, swatch: Swatch, [x, y]: Point) {
             canvas.stroke(&[[x, y], [x + 12.0, y]], 1.7, colour);
             canvas.disc([x + 6.0, y], 2.7, colour);
             canvas.disc([x + 6.0, y], 1.7, WHITE);
+        }
+        Swatch::Thick(colour) => canvas.stroke(&[[x, y], [x + 12.0, y]], 2.4, colour),
+        Swatch::Dot(colour) => canvas.disc([x + 6.0, y], 1.5, colour),
+        Swatch::Cross(colour) => {
+            let (left, right) = (x + 3.8, x + 8.2);
+            canvas.stroke(&[[left, y - 2.2], [right, y + 2.2]], 0.9, colour);
+            canvas.stroke(&[[left, y + 2.2], [right, y - 2.2]], 0.9, colour);
         }
         Swatch::Dashed(colour) => dashed(canvas, [x, y], [x + 12.0, y], 0.8, colour),
     }

@@ -17,6 +17,9 @@ use std::f64::consts::{FRAC_PI_2, TAU};
 pub struct LimitsFigure<'a> {
     /// Limits to show.
     pub limits: &'a ArtificialLimits,
+    /// Whether angles count from the previous link, as a planar arm's do, and not as the robot's
+    /// Denavit–Hartenberg rows say.
+    pub is_planar: bool,
 }
 
 /// Radii of the dial and of its coloured ring, points.
@@ -31,9 +34,11 @@ impl Figure for LimitsFigure<'_> {
     }
 
     fn caption(&self) -> String {
-        "Artificial joint limits before a failure: the coloured arc is allowed. 0° points along the \
-         previous link."
-            .into()
+        let zero = match self.is_planar {
+            true => "0° points along the previous link.",
+            false => "Angles are the joint variables of the robot's file.",
+        };
+        format!("Artificial joint limits before a failure: the coloured arc is allowed. {zero}")
     }
 
     fn size(&self) -> Size {

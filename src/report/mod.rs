@@ -2,25 +2,33 @@
 //!
 //! This room draws result types and never computes results: what a [`Report`] holds comes ready
 //! from the study. Every figure is a [`Figure`]: a drawing in printed points that the same code
-//! puts on a PNG (1600 pixels wide) or an SVG, and the table behind it as CSV. Files are written
+//! puts on a PNG (1600 pixels wide for one column of a paper) or an SVG, and the table behind it as CSV. Files are written
 //! whole or not at all, and the same input gives the same bytes.
 //!
 //! [`write_report`] writes everything; [`write_figure`], [`write_json`] and [`write_text`] write
 //! single files.
 
 mod arm;
+mod axonometry;
 mod canvas;
 mod convergence;
 mod error;
 mod figure;
 mod free_place;
+mod half_plane_figure;
 mod html;
+mod joint_bars;
 mod joint_mark;
 mod label;
 mod limits_figure;
 mod link_rod;
+mod manifold;
+mod manifold_figure;
+mod manifold_view;
 mod number;
+mod outline;
 mod panel;
+mod points;
 mod polar;
 mod projection;
 mod render;
@@ -30,10 +38,14 @@ mod robot_3d;
 mod robot_figure;
 mod robot_view;
 mod scene;
+mod section_view;
+mod sections;
 mod sensitivity;
+mod share_scale;
 mod shares;
 mod sizes_figure;
 mod slices;
+mod spatial_figure;
 mod style;
 mod subscript;
 mod table;
@@ -47,14 +59,20 @@ pub use canvas::{Canvas, Size};
 pub use convergence::{Convergence, ConvergencePoint};
 pub use error::ReportError;
 pub use figure::{Figure, Format, figure_png, figure_svg, write_figure};
+pub use half_plane_figure::HalfPlaneFigure;
 pub use html::{InlineFigure, page};
 pub use limits_figure::LimitsFigure;
+pub use manifold::{CriticalPoint, ManifoldCurve};
+pub use manifold_figure::ManifoldFigure;
+pub use manifold_view::ManifoldFigure3d;
 pub use number::{degrees, estimate, percentage, plain, unit, with_error};
+pub use points::{write_curves, write_points};
 pub use result_files::{write_bytes, write_json, write_text};
 pub use robot_3d::{JointMark, SpatialRobotFigure};
 pub use robot_figure::RobotFigure;
 pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};
 pub use sizes_figure::SizesFigure;
+pub use spatial_figure::SpatialWorkspaceFigure;
 pub use table::Table;
 pub use workspace_figure::WorkspaceFigure;
 pub use write::{Report, write_report};

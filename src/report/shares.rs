@@ -1,13 +1,9 @@
 //! The colours of a pose task's workspace: the share of fault-tolerant orientations at a point.
 
 use super::canvas::Canvas;
-use super::label::{Label, rectangle};
-use super::style::{HALF_CAPITAL, INK, NORMAL, PALE, SMALL};
-use super::ticks;
+use super::share_scale::ShareScale;
+use super::style::PALE;
 use crate::workspace::ShareMap;
-use plotters::prelude::ViridisRGB;
-use plotters::style::text_anchor::HPos;
-use plotters::style::{Color, RGBAColor};
 use std::f64::consts::{PI, TAU};
 
 /// Share of the cell at (x, y) metres; none outside the map or where it is not a number.
@@ -33,35 +29,17 @@ pub(super) fn share_at(map: &ShareMap, x: f64, y: f64) -> Option<f64> {
 pub(super) fn colour_at(map: &ShareMap, x: f64, y: f64) -> [u8; 3] {
     let r = x.hypot(y);
     let colour = match share_at(map, x, y) {
-        Some(share) if share > 0.0 => viridis(share),
+        Some(share) if share > 0.0 => ShareScale::FULL.colour(share),
         _ if map.unrestricted[0] <= r && r <= map.unrestricted[1] => PALE,
         _ => return [255; 3],
     };
     [colour.0, colour.1, colour.2]
 }
 
-fn viridis(share: f64) -> RGBAColor {
-    ViridisRGB::get_color(share.clamp(0.0, 1.0)).to_rgba()
-}
-
 /// Draws the colour bar for shares of 0 to 100 % with its left upper corner at (x, y).
-pub(super) fn colour_bar(canvas: &mut Canvas, [x, y]: [f64; 2], height: f64) {
-    let width = 8.0;
-    canvas.picture([x, y], [width, height], |_, at| {
-        let colour = viridis(1.0 - (at - y) / height);
-        [colour.0, colour.1, colour.2]
-    });
-    canvas.outline(&rectangle(x, y, width, height), 0.5, INK);
-    for tick in ticks::round(0.0, 100.0, 5) {
-        let at = y + height * (1.0 - tick.value / 100.0);
-        canvas.stroke(&[[x + width, at], [x + width + 2.5, at]], 0.6, INK);
-        let place = [x + width + 4.0, at + HALF_CAPITAL * SMALL];
-        Label::new(&tick.label, SMALL).draw(canvas, place);
-    }
+pub(super) fn colour_bar(canvas: &mut Canvas, corner: [f64; 2], height: f64) {
     let text = "fault-tolerant share of orientations (%)";
-    let label = Label::new(text, NORMAL).align(HPos::Center).upright();
-    let right = x + width + 4.0 + Label::new("100", SMALL).width() + 3.0 + NORMAL;
-    label.draw_within(canvas, [right, y + 0.5 * height], height);
+    ShareScale::FULL.draw_bar(canvas, corner, height, text);
 }
 
 #[cfg(test)]

@@ -5,11 +5,13 @@ use super::error::ReportError;
 use super::figure::{Figure, Format, figure_png, write_rendered};
 use super::html::{InlineFigure, page};
 use super::limits_figure::LimitsFigure;
+use super::points::{POINTS, write_points};
 use super::result_files::{write_json, write_text};
 use super::sensitivity::Sensitivity;
 use super::sizes_figure::SizesFigure;
+use super::style::COLUMN;
 use super::workspace_figure::WorkspaceFigure;
-use crate::workspace::{ArtificialLimits, FailureSet, WorkspaceSizes};
+use crate::workspace::{ArtificialLimits, FailureSet, SpatialShareMap, WorkspaceSizes};
 use std::path::{Path, PathBuf};
 
 /// Everything that a report tells about one design.
@@ -31,9 +33,10 @@ pub struct Report<'a> {
     pub status: String,
     /// Joints prone to failure.
     pub failures: &'a FailureSet,
-    /// Sizes of all workspaces.
+    /// Sizes of all workspaces; one that is not known is not a number. Without joints after a
+    /// failure, `post_failure` may be empty.
     pub sizes: &'a WorkspaceSizes,
-    /// Unit of the sizes, "m^2" or "m^2 rad".
+    /// Unit of the sizes, as in "m^2 rad" or "m^3".
     pub unit: String,
     /// Artificial limits, radians.
     pub limits: &'a ArtificialLimits,
@@ -41,6 +44,10 @@ pub struct Report<'a> {
     pub links: &'a [f64],
     /// The workspace from above, where there is such a picture.
     pub workspace: Option<WorkspaceFigure<'a>>,
+    /// Other figures, shown after that one and before all others.
+    pub figures: Vec<&'a dyn Figure>,
+    /// A spatial workspace, written as `points.vtk`.
+    pub points: Option<&'a SpatialShareMap>,
     /// The course of the search, if there was one.
     pub convergence: Option<Convergence>,
     /// Scores around the optimum, if they were computed.
@@ -56,48 +63,71 @@ pub struct Report<'a> {
 }
 
 impl Report<'_> {
-    /// The sizes as a figure.
-    fn sizes_figure(&self) -> SizesFigure<'_> {
-        SizesFigure {
-            sizes: self.sizes,
+    /// The sizes as a figure; none where one of them is not known.
+    fn sizes_figure(&self) -> Option<SizesFigure<'_>> {
+        let sizes = self.sizes;
+        let rest = [
+            &sizes.unrestricted,
+            &sizes.pre_failure,
+            &sizes.fault_tolerant,
+        ];
+        let mut all = sizes.post_failure.iter().chain(rest);
+        let figure = SizesFigure {
+            sizes,
             failures: self.failures,
             unit: &self.unit,
-        }
+        };
+        all.all(|size| size.value.is_finite()).then_some(figure)
     }
 
     /// The limits as a figure.
     fn limits_figure(&self) -> LimitsFigure<'_> {
         LimitsFigure {
             limits: self.limits,
+            is_planar: self.workspace.is_some() || !self.links.is_empty(),
         }
+    }
+
+    /// All figures in the order of the page.
+    fn all_figures<'f>(
+        &'f self,
+        limits: &'f LimitsFigure,
+        sizes: Option<&'f SizesFigure>,
+    ) -> Vec<&'f dyn Figure> {
+        let mut figures: Vec<&dyn Figure> = Vec::new();
+        figures.extend(self.workspace.as_ref().map(|f| f as &dyn Figure));
+        figures.extend(self.figures.iter().map(|f| *f as &dyn Figure));
+        figures.push(limits);
+        figures.extend(sizes.map(|f| f as &dyn Figure));
+        figures.extend(self.convergence.as_ref().map(|f| f as &dyn Figure));
+        figures.extend(self.sensitivity.as_ref().map(|f| f as &dyn Figure));
+        figures
     }
 }
 
-/// Writes all figures with their tables, `result.json`, `study.toml` and `report.html` into
-/// `directory`; returns the files' paths. The page contains all figures whatever the `formats`.
+/// Writes all figures with their tables, `result.json`, `study.toml`, `report.html` and, if there
+/// are any, `points.vtk` into `directory`; returns the files' paths. The page contains all figures whatever the `formats`.
 pub fn write_report(
     report: &Report,
     directory: &Path,
     formats: &[Format],
 ) -> Result<Vec<PathBuf>, ReportError> {
     let (sizes, limits) = (report.sizes_figure(), report.limits_figure());
-    let mut figures: Vec<&dyn Figure> = vec![&limits, &sizes];
-    if let Some(workspace) = &report.workspace {
-        figures.insert(0, workspace);
-    }
-    figures.extend(report.convergence.as_ref().map(|f| f as &dyn Figure));
-    figures.extend(report.sensitivity.as_ref().map(|f| f as &dyn Figure));
-
     let (mut written, mut inline) = (Vec::new(), Vec::new());
-    for figure in figures {
+    for figure in report.all_figures(&limits, sizes.as_ref()) {
         let png = figure_png(figure)?;
         written.extend(write_rendered(figure, &png, directory, formats)?);
         inline.push(InlineFigure {
             png,
             caption: figure.caption(),
+            is_wide: figure.size().width > COLUMN,
         });
     }
     let path = |name: &str| directory.join(name);
+    if let Some(map) = report.points {
+        write_points(map, &path(POINTS))?;
+        written.push(path(POINTS));
+    }
     write_text(&path("study.toml"), &report.study_toml)?;
     write_text(&path("report.html"), &page(report, &inline))?;
     // Last: where it is, the report is whole.

@@ -241,6 +241,8 @@ impl Outcome<'_> {
                 arm_angles: picture::posture(&self.arm, &self.limits, map),
                 title: robot.name.clone(),
             }),
+            figures: Vec::new(),
+            points: None,
             convergence: self
                 .optimum
                 .as_ref()

@@ -5,7 +5,10 @@ mod limits;
 mod map;
 pub mod planar;
 mod size;
+mod spatial_map;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
 pub use size::{Estimate, WorkspaceSizes};
+pub use spatial_map::SpatialShareMap;
+pub(crate) use spatial_map::interval;

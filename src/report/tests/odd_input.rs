@@ -24,6 +24,7 @@ fn empty_results_are_drawn() {
         assert_draws(&figure(&empty));
         assert_draws(&LimitsFigure {
             limits: &empty.limits,
+            is_planar: true,
         });
     }
     let nothing = ShareMap {
@@ -91,6 +92,7 @@ fn odd_numbers_are_drawn() {
         sample.links = vec![value, 1.0];
         assert_draws(&LimitsFigure {
             limits: &sample.limits,
+            is_planar: true,
         });
         assert_draws(&figure(&sample));
     }
