@@ -1,8 +1,11 @@
 //! Walks on a pre-image of two or more dimensions to where one joint's angle is stationary
 //! [S4 eq. 18].
 
+use super::seeds::{Seed, Seeder};
+use crate::angle::wrap;
 use crate::design::TaskSpace;
-use crate::kinematics::{Chain, Goal, Kernel, damped_step, dot};
+use crate::kinematics::{Chain, Goal, Kernel, Lanes, damped_step, dot};
+use rand_chacha::ChaCha8Rng;
 
 /// Largest slope of the joint's angle at which the walk ends: the angle is then within about
 /// its square, divided by the curvature, of the extremum.
@@ -36,6 +39,19 @@ impl Ascent {
         })
     }
 
+    /// Whether any of some random starts reaches the task: the configuration where the first one
+    /// lands.
+    pub fn land(&self, goal: &Goal<f64>, starts: usize, rng: &mut ChaCha8Rng) -> Option<Vec<f64>> {
+        match self {
+            Ascent::Two4(kernel) => land(kernel, goal, starts, rng),
+            Ascent::Two5(kernel) => land(kernel, goal, starts, rng),
+            Ascent::Three5(kernel) => land(kernel, goal, starts, rng),
+            Ascent::Three6(kernel) => land(kernel, goal, starts, rng),
+            Ascent::Six8(kernel) => land(kernel, goal, starts, rng),
+            Ascent::Six9(kernel) => land(kernel, goal, starts, rng),
+        }
+    }
+
     /// The value of `joint` (from 0) at the end of a walk from `start` that raises (`sign` = 1)
     /// or lowers (−1) it.
     pub fn extremum(&self, goal: &Goal<f64>, start: &[f64], joint: usize, sign: f64) -> f64 {
@@ -49,6 +65,25 @@ impl Ascent {
         };
         value.unwrap_or(start[joint])
     }
+}
+
+fn land<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    starts: usize,
+    rng: &mut ChaCha8Rng,
+) -> Option<Vec<f64>> {
+    let lanes: Goal<Lanes> = goal.splat();
+    let mut seeder = Seeder::new(rng);
+    let mut landed = None;
+    while landed.is_none() && seeder.tried < starts {
+        seeder.next(kernel, &lanes, rng, |seed| {
+            if let Seed::Found(point) = seed {
+                landed.get_or_insert(point.map(wrap).to_vec());
+            }
+        });
+    }
+    landed
 }
 
 fn walk<const N: usize, const M: usize>(

@@ -111,6 +111,13 @@ impl Sliced {
         }
     }
 
+    /// Value number `k` of the grid along a joint; strokes are half a turn long.
+    fn grid_value(&self, joint: usize, k: usize) -> f64 {
+        let is_prismatic = self.chain.joints[joint].turn == 0.0;
+        let share = (k as f64 + 0.5) / self.per_joint as f64 - 0.5;
+        share * if is_prismatic { PI } else { TAU }
+    }
+
     fn slice(&self, fixed: &[(usize, f64)]) -> Option<Slice> {
         let mut fixed = fixed.to_vec();
         fixed.sort_by_key(|&(joint, _)| joint);
@@ -135,19 +142,50 @@ impl Sliced {
         self.seeds = 0;
         self.sound = true;
         self.contributions.clear();
-        let mut lift = Lift::default();
-        for slice in &mut self.slices {
-            let goal = Goal::new(&slice.chain, tool);
-            slice.solver.solve(&goal, &self.settings, rng);
-            self.seeds += slice.solver.effort().0;
-            self.sound &= slice.solver.is_sound();
-            slice.solver.show(|curve| {
-                let lifted = lift.lift(&curve, &slice.fixed);
-                contribute(&lifted, &mut self.contributions);
-                show(lifted);
-            });
+        let whole = Goal::new(&self.chain, tool);
+        // Out of reach of the whole robot: no slice needs to be searched.
+        let Some(landed) = self
+            .ascent
+            .land(&whole, self.settings.unreachable_after * 2, rng)
+        else {
+            return vec![AngleSet::empty(); self.joints];
+        };
+        let mut slices = std::mem::take(&mut self.slices);
+        for slice in &mut slices {
+            self.solve_slice(slice, tool, rng, show);
         }
-        self.ranges(&Goal::new(&self.chain, tool))
+        self.slices = slices;
+        if self.contributions.is_empty() {
+            // A small pre-image between the slices: cut it where it was found.
+            let fixed: Vec<_> = self
+                .cut
+                .iter()
+                .map(|&joint| (joint, landed[joint]))
+                .collect();
+            if let Some(mut slice) = self.slice(&fixed) {
+                self.solve_slice(&mut slice, tool, rng, show);
+            }
+        }
+        self.ranges(&whole)
+    }
+
+    fn solve_slice(
+        &mut self,
+        slice: &mut Slice,
+        tool: &Isometry3<f64>,
+        rng: &mut ChaCha8Rng,
+        show: &mut dyn FnMut(CurveRef<'_>),
+    ) {
+        let goal = Goal::new(&slice.chain, tool);
+        slice.solver.solve(&goal, &self.settings, rng);
+        self.seeds += slice.solver.effort().0;
+        self.sound &= slice.solver.is_sound();
+        let mut lift = Lift::default();
+        slice.solver.show(|curve| {
+            let lifted = lift.lift(&curve, &slice.fixed);
+            contribute(&lifted, &mut self.contributions);
+            show(lifted);
+        });
     }
 
     /// Shows the curves on the faces of a box: joint j fixed at either end of `limits[j]`
@@ -206,8 +244,7 @@ impl Sliced {
             && left == 1
         {
             for k in 0..self.per_joint {
-                let value = ((k as f64 + 0.5) / self.per_joint as f64 - 0.5) * TAU;
-                fixed.push((joint, value));
+                fixed.push((joint, self.grid_value(joint, k)));
                 slices.extend(self.slice(fixed));
                 fixed.pop();
             }

@@ -5,11 +5,11 @@ use super::build::{Focus, Packing, build_block};
 use super::plan::SamplePlan;
 use super::score::{Limits16, Rule};
 use super::store::{AtlasKey, AtlasStore, ShardBytes};
-use crate::angle::Arc;
+use crate::angle::{AngleSet, Arc};
 use crate::design::{JointKind, Robot};
 use crate::kinematics::fixed_transforms;
 use crate::manifold::{CurveSource, ManifoldError, SearchSettings};
-use crate::workspace::{ArtificialLimits, FailureSet};
+use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use rayon::prelude::*;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::Range;
@@ -85,8 +85,8 @@ pub struct Prediction {
 pub struct Atlas {
     plan: SamplePlan,
     pub(super) joints: usize,
-    /// Physical limits of joint 1.
-    pub(super) first_physical: Arc,
+    /// Physical limits of every joint.
+    pub(super) physical: Vec<Arc>,
     /// Half the distance between slices along every joint, radians.
     pub(super) slabs: Vec<f64>,
     shards: Vec<ShardBytes>,
@@ -130,16 +130,19 @@ impl AtlasRecipe {
 
     /// The same, but for scoring `limits` alone: the atlas is small, and with more than one
     /// degree of redundancy its images have their exact ends, which lie on the faces of the box.
+    ///
+    /// Physical limits of joint 1 need the whole pre-image: then this changes nothing.
     pub fn focused(mut self, limits: &ArtificialLimits) -> AtlasRecipe {
+        if !self.packing.physical[0].is_full() {
+            return self;
+        }
+        let limits = within(limits, &self.packing.physical);
         let ends = limits.joints().iter().map(|limit| {
             let is_free = limit.is_full();
             (!is_free).then_some([limit.lower, limit.upper])
         });
         let faces = self.source.faces(&ends.collect::<Vec<_>>());
-        self.packing.focus = Some(Focus {
-            limits: limits.clone(),
-            faces,
-        });
+        self.packing.focus = Some(Focus { limits, faces });
         self
     }
 
@@ -217,7 +220,7 @@ impl AtlasRecipe {
         Ok(Atlas {
             plan: self.plan.clone(),
             joints: self.robot.joints(),
-            first_physical: *self.packing.physical.first().unwrap_or(&Arc::FULL),
+            physical: self.packing.physical.clone(),
             slabs: match self.packing.focus {
                 None => self.source.slabs(),
                 Some(_) => vec![0.0; self.robot.joints()],
@@ -312,6 +315,26 @@ impl AtlasRecipe {
     }
 }
 
+fn within(limits: &ArtificialLimits, physical: &[Arc]) -> ArtificialLimits {
+    let cut = |(limit, physical): (&JointLimit, &Arc)| {
+        if physical.is_full() {
+            return *limit;
+        }
+        let both = AngleSet::from(limit.arc()).intersection(&AngleSet::from(*physical));
+        let longest = both
+            .arcs()
+            .iter()
+            .reduce(|a, b| if b.width() > a.width() { b } else { a });
+        match longest {
+            Some(arc) => JointLimit::new(arc.start(), arc.end()),
+            // Nothing is left: the joint stands at a physical limit.
+            None => JointLimit::new(physical.start(), physical.start()),
+        }
+    };
+    let pairs = limits.joints().iter().zip(physical);
+    ArtificialLimits::new(pairs.map(cut).collect())
+}
+
 /// Physical limits as arcs of internal joint variables.
 fn physical_arcs(robot: &Robot) -> Vec<Arc> {
     let arc = |joint: usize| match (robot.joint_kind(joint), &robot.physical_limits) {
@@ -337,7 +360,19 @@ impl Atlas {
         failures: &FailureSet,
         rule: Rule,
     ) -> Limits16 {
-        Limits16::new(limits, failures, rule, &self.slabs)
+        let limits = &self.within_physical(limits);
+        Limits16::new(limits, failures, rule, &self.slabs, self.physical[0])
+    }
+
+    /// Whether no joint has physical limits.
+    pub fn is_free(&self) -> bool {
+        self.physical.iter().all(Arc::is_full)
+    }
+
+    /// The limits cut to the physical ones, joint by joint. Where two pieces are left, the
+    /// longer one.
+    pub fn within_physical(&self, limits: &ArtificialLimits) -> ArtificialLimits {
+        within(limits, &self.physical)
     }
 
     /// What was sampled.

@@ -9,6 +9,8 @@ mod atlas;
 mod block;
 mod build;
 mod clip;
+mod first_joint;
+mod maps;
 mod plan;
 mod polyline;
 mod profile;

@@ -42,7 +42,8 @@ struct Family {
 
 impl Atlas {
     /// S_F for `limits` with those of `joint` (from 0) replaced by every width of `widths`
-    /// (radians, ascending, in [0, 2π]).
+    /// (radians, ascending, in [0, 2π]); `None` for robots with physical limits, which have to be
+    /// scored one by one.
     pub fn profile(
         &self,
         limits: &ArtificialLimits,
@@ -50,7 +51,10 @@ impl Atlas {
         joint: usize,
         growth: Growth,
         widths: &[f64],
-    ) -> Vec<f64> {
+    ) -> Option<Vec<f64>> {
+        if !self.is_free() {
+            return None;
+        }
         let fixed = self.limits(limits, failures, Rule::Definition);
         let parts: Vec<Vec<f64>> = if joint == 0 {
             self.views()
@@ -70,7 +74,7 @@ impl Atlas {
                 *sum += add;
             }
         }
-        sums
+        Some(sums)
     }
 }
 

@@ -12,6 +12,7 @@
 
 use super::block::{BlockView, PoseRecord};
 use super::clip::Box16;
+use super::first_joint::survives_any_lock;
 use super::turn16::{Arc16, STEP, angle_set};
 use crate::angle::{AngleSet, Arc};
 use crate::workspace::{ArtificialLimits, FailureSet};
@@ -42,6 +43,17 @@ pub(super) struct Limits16 {
     /// Which joints may lock.
     pub prone: Vec<bool>,
     pub rule: Rule,
+    /// Physical limits of joint 1, if it has any.
+    physical: Option<Physical>,
+}
+
+/// Physical limits of joint 1 with what their test needs.
+#[derive(Clone, Debug)]
+struct Physical {
+    allowed: Arc,
+    /// Everything else.
+    gap: Arc,
+    slabs: Vec<f64>,
 }
 
 impl Limits16 {
@@ -52,6 +64,7 @@ impl Limits16 {
         failures: &FailureSet,
         rule: Rule,
         slabs: &[f64],
+        physical: Arc,
     ) -> Limits16 {
         let arcs: Vec<Arc16> = limits
             .joints()
@@ -75,7 +88,51 @@ impl Limits16 {
             first,
             rest,
             rule,
+            physical: (!physical.is_full()).then(|| Physical {
+                allowed: physical,
+                gap: Arc::new(physical.end(), TAU - physical.width()),
+                slabs: slabs.to_vec(),
+            }),
         }
+    }
+
+    /// Rotation angles at which the sample is reached with all joints inside their physical
+    /// limits; `range` is Θ₁.
+    pub fn unrestricted(&self, range: &[Arc16]) -> AngleSet {
+        match &self.physical {
+            None => AngleSet::full(),
+            Some(physical) => angle_set(range).mirrored().sum(&physical.allowed),
+        }
+    }
+
+    /// Rotation angles at which a lock of `joint` ≥ 2 (from 0) is survived, A ⊂ Θ being known.
+    pub fn lock_of(&self, view: &BlockView, pose: &PoseRecord, joint: usize) -> AngleSet {
+        match &self.physical {
+            None => AngleSet::full(),
+            Some(physical) => survives_any_lock(
+                view,
+                pose,
+                joint,
+                self.arcs[joint],
+                &physical.gap,
+                physical.slabs[joint],
+            ),
+        }
+    }
+
+    /// The part of `set` that also survives physical limits of joint 1.
+    fn with_physical(&self, set: AngleSet, view: &BlockView, pose: &PoseRecord) -> AngleSet {
+        if self.physical.is_none() {
+            return set;
+        }
+        let joints = (1..self.arcs.len()).filter(|&joint| self.prone[joint]);
+        joints.fold(set, |set, joint| {
+            if set.is_empty() {
+                set
+            } else {
+                set.intersection(&self.lock_of(view, pose, joint))
+            }
+        })
     }
 
     /// Whether the sample survives a lock of any joint i ≥ 2 that may lock.
@@ -147,11 +204,14 @@ impl Limits16 {
         }
         let before = self.before_failure(&self.image(view.joints, view.pieces(pose)));
         let after = self.after_lock_of_1(view.ranges(index).next().unwrap_or_default());
-        before.intersection(&after)
+        self.with_physical(before.intersection(&after), view, pose)
     }
 
     /// |B| of pose `index`.
     pub fn measure(&self, view: &BlockView, index: usize) -> f64 {
+        if self.physical.is_some() {
+            return self.rotation_set(view, index).measure();
+        }
         if !self.survives_locks(view.ranges(index)) {
             return 0.0;
         }

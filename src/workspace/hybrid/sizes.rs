@@ -4,9 +4,9 @@ use super::atlas::Atlas;
 use super::block::BlockView;
 use super::plan::Sampling;
 use super::score::{Limits16, Rule, covers};
+use crate::angle::AngleSet;
 use crate::workspace::{ArtificialLimits, Estimate, FailureSet, WorkspaceSizes};
 use rayon::prelude::*;
-use std::f64::consts::TAU;
 
 /// How many task points an estimate rests on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -181,20 +181,28 @@ fn pose_measures(view: &BlockView, index: usize, limits: &Limits16) -> Vec<f64> 
     let image = limits.image(view.joints, view.pieces(pose));
     let before = limits.before_failure(&image);
     let mut ranges = view.ranges(index);
-    let after_1 = limits.lock_of_1(ranges.next().unwrap_or_default());
-    let survives = limits.survives_locks(view.ranges(index));
-    let both = if limits.prone[0] {
-        before.overlap(&after_1)
-    } else {
-        before.measure()
-    };
+    let first = ranges.next().unwrap_or_default();
     let mut measures = vec![
-        if survives { both } else { 0.0 },
+        0.0,
         before.measure(),
-        TAU,
-        after_1.measure(),
+        limits.unrestricted(first).measure(),
+        limits.lock_of_1(first).measure(),
     ];
-    let rest = ranges.zip(&limits.arcs[1..]);
-    measures.extend(rest.map(|(range, limit)| if covers(range, *limit) { TAU } else { 0.0 }));
+    let mut tolerant = before;
+    if limits.prone[0] {
+        tolerant = tolerant.intersection(&limits.lock_of_1(first));
+    }
+    for (joint, range) in (1..).zip(ranges) {
+        let survives = if covers(range, limits.arcs[joint]) {
+            limits.lock_of(view, pose, joint)
+        } else {
+            AngleSet::empty()
+        };
+        measures.push(survives.measure());
+        if limits.prone[joint] {
+            tolerant = tolerant.intersection(&survives);
+        }
+    }
+    measures[0] = tolerant.measure();
     measures
 }

@@ -49,7 +49,9 @@ fn profiles_agree_with_single_scores() {
         for limits in [&tight, &free] {
             for joint in 0..3 {
                 for growth in [Growth::Lower, Growth::Upper, Growth::Both] {
-                    let profile = atlas.profile(limits, &failures, joint, growth, &widths);
+                    let profile = atlas
+                        .profile(limits, &failures, joint, growth, &widths)
+                        .unwrap();
                     let mut best = 0.0f64;
                     for (&width, &found) in widths.iter().zip(&profile) {
                         let changed = changed(limits, joint, growth, width);
