@@ -5,10 +5,11 @@ use super::self_motion::{SelfMotionManifold, joint_ranges};
 use super::{CurveStatus, SearchSettings};
 use crate::angle::AngleSet;
 use crate::design::{Robot, TaskSpace};
-use crate::kinematics::{Chain, Goal, reach};
-use nalgebra::Isometry3;
+use crate::kinematics::{Chain, ChainJoint, Goal};
+use nalgebra::{Isometry3, Vector3};
 use rand_chacha::ChaCha8Rng;
 use serde::{Deserialize, Serialize};
+use std::f64::consts::FRAC_PI_2;
 
 /// How sure it is that a pre-image holds every manifold.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -65,6 +66,7 @@ pub enum ManifoldError {
 #[derive(Clone, Debug)]
 pub struct PreImageSearch {
     chain: Chain,
+    task: TaskSpace,
     solver: AnySolver,
     reach: f64,
     settings: SearchSettings,
@@ -81,16 +83,29 @@ impl PreImageSearch {
         settings: SearchSettings,
     ) -> Result<PreImageSearch, ManifoldError> {
         let chain = Chain::new(robot).ok_or(ManifoldError::Unlimited)?;
+        PreImageSearch::from_chain(chain, task, settings)
+    }
+
+    /// A search for `chain`, e.g. that of a robot with joints held still ([`Chain::locked`]).
+    ///
+    /// # Errors
+    /// Unless the chain has one joint more than `task` has dimensions.
+    pub fn from_chain(
+        chain: Chain,
+        task: TaskSpace,
+        settings: SearchSettings,
+    ) -> Result<PreImageSearch, ManifoldError> {
         let solver = AnySolver::new(&chain, task).ok_or_else(|| ManifoldError::Redundancy {
-            joints: robot.joints(),
+            joints: chain.len(),
             dimension: task.dimension(),
-            degree: robot.degree_of_redundancy(task),
+            degree: chain.len() as isize - task.dimension() as isize,
             wanted: "1",
         })?;
         Ok(PreImageSearch {
+            reach: reach(&chain),
             chain,
+            task,
             solver,
-            reach: reach(robot),
             settings,
         })
     }
@@ -104,8 +119,10 @@ impl PreImageSearch {
     /// about z, position tasks no rotation).
     pub fn find(&mut self, tool: &Isometry3<f64>, rng: &mut ChaCha8Rng) -> PreImage {
         let goal = Goal::new(&self.chain, tool);
-        // The tool cannot be farther from the base than all links together.
-        let out_of_reach = tool.translation.vector.norm() > self.reach * (1.0 + 1e-9);
+        // The tool cannot be farther from joint 1 than all links together.
+        let [x, y, z] = goal.position;
+        let height = if self.task.is_planar() { 0.0 } else { z };
+        let out_of_reach = x.hypot(y).hypot(height) > self.reach * (1.0 + 1e-9);
         if out_of_reach {
             return PreImage {
                 joints: self.chain.len(),
@@ -126,6 +143,13 @@ impl PreImageSearch {
             landed,
         }
     }
+}
+
+/// No configuration brings the tool farther from the origin of joint 1, metres.
+fn reach(chain: &Chain) -> f64 {
+    let link = |joint: &ChainJoint| Vector3::from(joint.arm).norm() + FRAC_PI_2 * joint.slide;
+    let links: f64 = chain.joints.iter().map(link).sum();
+    links + chain.end.translation.vector.norm()
 }
 
 fn judge(manifolds: &[SelfMotionManifold], seeds: usize, landed: usize) -> Completeness {

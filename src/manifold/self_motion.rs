@@ -68,7 +68,8 @@ impl SelfMotionManifold {
         &self.points[index * self.joints..][..self.joints]
     }
 
-    fn tangent(&self, index: usize) -> &[f64] {
+    /// Unit tangent at vertex `index`.
+    pub fn tangent(&self, index: usize) -> &[f64] {
         &self.tangents[index * self.joints..][..self.joints]
     }
 
@@ -87,6 +88,29 @@ impl SelfMotionManifold {
             last: [t[joint]],
             length: square([a, b]).sqrt() * (1.0 + square([s, t]) / 24.0),
         }
+    }
+
+    /// The segment on which `theta` lies within `tolerance` radians (modulo full turns of revolute
+    /// joints), with the parameter on it in [−0.03, 1.03].
+    pub fn locate(&self, theta: &[f64], tolerance: f64) -> Option<(usize, f64)> {
+        match self.joints {
+            3 => self.curve::<3>().locate(theta.try_into().ok()?, tolerance),
+            4 => self.curve::<4>().locate(theta.try_into().ok()?, tolerance),
+            _ => self.curve::<7>().locate(theta.try_into().ok()?, tolerance),
+        }
+    }
+
+    fn curve<const N: usize>(&self) -> Curve<N> {
+        let mut curve = Curve::new();
+        for index in 0..self.vertices() {
+            let [point, tangent] = [self.point(index), self.tangent(index)];
+            curve.push(
+                std::array::from_fn(|k| point[k]),
+                std::array::from_fn(|k| tangent[k]),
+            );
+        }
+        curve.measure();
+        curve
     }
 
     /// Configuration on segment `index` at parameter `u` in [0, 1].
