@@ -40,7 +40,7 @@ struct Tally {
     seeds: usize,
     seconds: f64,
     /// Per decade of the estimate: poses, incomplete poses, sum of estimates.
-    estimate: [(usize, usize, f64); 8],
+    estimate: [(usize, usize, f64); 10],
     unknown: usize,
 }
 
@@ -135,7 +135,11 @@ fn miss(arm: &Arm, theta: &[f64], pose: &Isometry3<f64>) -> f64 {
 fn reach(chain: &Chain) -> f64 {
     let norm = |arm: [f64; 3]| arm.iter().map(|x| x * x).sum::<f64>().sqrt();
     let slide = |slide: f64| 1.6 * slide;
-    chain.joints.iter().map(|j| norm(j.arm) + slide(j.slide)).sum()
+    chain
+        .joints
+        .iter()
+        .map(|j| norm(j.arm) + slide(j.slide))
+        .sum()
 }
 
 fn compare(
@@ -176,14 +180,15 @@ fn compare(
     let missed = |m: &&SelfMotionManifold| !known(m, &found.manifolds);
     let missed: Vec<_> = long.manifolds.iter().filter(missed).collect();
     tally.incomplete = !missed.is_empty() as usize;
-    let all_closed = |m: &SelfMotionManifold| m.status == CurveStatus::Closed && m.crossings.is_empty();
+    let all_closed =
+        |m: &SelfMotionManifold| m.status == CurveStatus::Closed && m.crossings.is_empty();
     let revolute = arm.chain.joints.iter().all(|joint| joint.turn == 1.0);
     if revolute && found.manifolds.iter().all(all_closed) {
         tally.winding = found.winding_sum().iter().any(|&sum| sum != 0) as usize;
     }
     match found.completeness {
         Completeness::Evidence(p) => {
-            let decade = (-p.max(1e-12).log10() * 2.0).clamp(0.0, 7.0) as usize;
+            let decade = (-p.max(1e-12).log10() * 2.0).clamp(0.0, 9.0) as usize;
             tally.estimate[decade] = (1, tally.incomplete, p);
         }
         Completeness::Proved => {}
@@ -220,7 +225,10 @@ fn study(arm: &Arm, settings: SearchSettings, times: usize, poses: u64, tell: bo
     let search = |settings| {
         PreImageSearch::from_chain(arm.chain.clone(), arm.task, settings).expect("redundancy 1")
     };
-    let (short, long) = (search(settings), search(longer(SearchSettings::default(), times)));
+    let (short, long) = (
+        search(settings),
+        search(longer(SearchSettings::default(), times)),
+    );
     (0..poses)
         .into_par_iter()
         .map_init(
@@ -232,6 +240,14 @@ fn study(arm: &Arm, settings: SearchSettings, times: usize, poses: u64, tell: bo
                 let seconds = clock.elapsed().as_secs_f64();
                 let more = long.find(&pose, &mut stream(300, index));
                 let what = format!("{} pose {index}", arm.name);
+                if std::env::var("DUMP").is_ok() {
+                    let hits: Vec<_> = more.manifolds.iter().map(|m| m.hits).collect();
+                    println!(
+                        "DUMP {} {} {hits:?}",
+                        arm.name.replace(' ', "_"),
+                        more.seeds
+                    );
+                }
                 Tally {
                     seconds,
                     ..compare(arm, &pose, &found, &more, &what, tell)
@@ -252,7 +268,7 @@ fn every_manifold_of_every_arm() {
     let poses = environment("POSES", 1000);
     let only = std::env::var("ARM").unwrap_or_default();
     let tell = std::env::var("TELL").is_ok();
-    let mut sums = [[(0, 0, 0.0); 8]; 2];
+    let mut sums = [[(0, 0, 0.0); 10]; 2];
     for arm in arms::all().iter().filter(|arm| arm.name.contains(&only)) {
         let kinds = [
             ("default", SearchSettings::default()),

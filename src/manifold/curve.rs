@@ -25,7 +25,7 @@ pub enum CurveStatus {
 pub(crate) struct Curve<const N: usize> {
     /// Vertices, internal joint variables, unwrapped along the curve.
     pub points: Vec<[f64; N]>,
-    /// Unit tangents at the vertices, in the direction of the cofactor field at the start.
+    /// Unit tangents at the vertices (0 at an isolated singular configuration), in the direction of the cofactor field at the start.
     pub tangents: Vec<[f64; N]>,
     pub status: CurveStatus,
     /// Full turns of every joint along a closed curve.
@@ -64,6 +64,12 @@ impl<const N: usize> Curve<N> {
     pub fn push(&mut self, point: [f64; N], tangent: [f64; N]) {
         self.points.push(point);
         self.tangents.push(tangent);
+    }
+
+    /// Whether the curve closed, or ended at a stroke, without a singular configuration.
+    pub fn is_smooth(&self) -> bool {
+        let ended = matches!(self.status, CurveStatus::Closed | CurveStatus::Stroke);
+        ended && self.crossings.is_empty()
     }
 
     /// Number of segments.
@@ -147,7 +153,20 @@ impl<const N: usize> Curve<N> {
 
     /// The segment on which `point` (modulo full turns) lies within `tolerance`, with the
     /// parameter on it.
-    pub fn locate(&self, point: &[f64; N], tolerance: f64) -> Option<(usize, f64)> {
+    ///
+    /// Where two strands run past each other closer than that, `tangent`, the cofactor field at
+    /// the point, tells them apart: neighbours are oriented oppositely. Pass `None` if it is not
+    /// known; it is not looked at on curves through singular configurations, which change sign.
+    pub fn locate(
+        &self,
+        point: &[f64; N],
+        tangent: Option<&[f64; N]>,
+        tolerance: f64,
+    ) -> Option<(usize, f64)> {
+        if let [only] = self.points.as_slice() {
+            return (distance(only, point) < tolerance).then_some((0, 0.0));
+        }
+        let tangent = tangent.filter(|_| self.crossings.is_empty());
         // A point of a segment is no farther from the nearer end than half the segment.
         let near = 0.55 * self.longest + tolerance;
         let mut best: Option<(usize, f64, f64)> = None;
@@ -169,6 +188,7 @@ impl<const N: usize> Curve<N> {
                 if let Some((u, miss)) = self.segment(segment).project(&lifted)
                     && miss < tolerance
                     && best.is_none_or(|(_, _, least)| miss < least)
+                    && tangent.is_none_or(|tangent| self.runs_along(segment, u, tangent))
                 {
                     best = Some((segment, u, miss));
                 }
@@ -178,6 +198,14 @@ impl<const N: usize> Curve<N> {
             }
         }
         best.map(|(segment, u, _)| (segment, u))
+    }
+}
+
+impl<const N: usize> Curve<N> {
+    fn runs_along(&self, segment: usize, u: f64, tangent: &[f64; N]) -> bool {
+        let first = dot(&self.tangents[segment], tangent);
+        let last = dot(&self.tangents[segment + 1], tangent);
+        (1.0 - u) * first + u * last > 0.0
     }
 }
 

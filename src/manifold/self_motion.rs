@@ -75,8 +75,10 @@ impl SelfMotionManifold {
 
     /// The cubic of coordinate `joint` alone, between vertices `index` and `index + 1`.
     fn coordinate(&self, index: usize, joint: usize) -> Segment<1> {
-        let (a, b) = (self.point(index), self.point(index + 1));
-        let (s, t) = (self.tangent(index), self.tangent(index + 1));
+        // An isolated configuration has no second vertex.
+        let next = (index + 1).min(self.vertices() - 1);
+        let (a, b) = (self.point(index), self.point(next));
+        let (s, t) = (self.tangent(index), self.tangent(next));
         let square = |pairs: [&[f64]; 2]| -> f64 {
             let both = pairs[0].iter().zip(pairs[1]);
             both.map(|(x, y)| (x - y) * (x - y)).sum()
@@ -94,9 +96,15 @@ impl SelfMotionManifold {
     /// joints), with the parameter on it in [−0.03, 1.03].
     pub fn locate(&self, theta: &[f64], tolerance: f64) -> Option<(usize, f64)> {
         match self.joints {
-            3 => self.curve::<3>().locate(theta.try_into().ok()?, tolerance),
-            4 => self.curve::<4>().locate(theta.try_into().ok()?, tolerance),
-            _ => self.curve::<7>().locate(theta.try_into().ok()?, tolerance),
+            3 => self
+                .curve::<3>()
+                .locate(theta.try_into().ok()?, None, tolerance),
+            4 => self
+                .curve::<4>()
+                .locate(theta.try_into().ok()?, None, tolerance),
+            _ => self
+                .curve::<7>()
+                .locate(theta.try_into().ok()?, None, tolerance),
         }
     }
 

@@ -34,7 +34,7 @@ impl Default for TraceSettings {
             correction: 5e-4,
             max_step: 0.4,
             max_turn: 0.3,
-            max_steps: 40_000,
+            max_steps: 10_000,
             polish: 1,
         }
     }
@@ -47,8 +47,19 @@ impl TraceSettings {
             correction: 2e-3,
             max_step: 0.5,
             max_turn: 0.4,
-            max_steps: 20_000,
+            max_steps: 5_000,
             polish: 0,
+        }
+    }
+}
+
+impl TraceSettings {
+    /// For a curve that did not close.
+    fn finer(self) -> TraceSettings {
+        TraceSettings {
+            correction: 0.1 * self.correction,
+            max_turn: 0.5 * self.max_turn,
+            ..self
         }
     }
 }
@@ -56,7 +67,7 @@ impl TraceSettings {
 /// First step of a curve; shorter loops than about three of these are not resolved.
 const FIRST_STEP: f64 = 0.02;
 /// Steps below which the configuration counts as singular.
-const LEAST_STEP: f64 = 1e-6;
+const LEAST_STEP: f64 = 1e-7;
 
 /// Why a march ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -67,11 +78,36 @@ enum Ending {
     TooLong,
 }
 
+/// How often a curve is traced again with finer steps if it does not close smoothly.
+const RETRIES: usize = 2;
+
 /// Traces the curve through `start`, which must solve the task, into `curve`.
 ///
 /// The curve runs along the cofactor field at `start`. If it does not close, it is followed both
-/// ways, and `start` lies inside it.
+/// ways, and `start` lies inside it. A curve that ends at a singular configuration or runs
+/// through one is traced again with finer steps, which tell a sharp bend from a node.
 pub(crate) fn trace<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    start: &[f64; N],
+    settings: &TraceSettings,
+    curve: &mut Curve<N>,
+) {
+    let mut settings = *settings;
+    for _ in 0..=RETRIES {
+        trace_once(kernel, goal, start, &settings, curve);
+        if curve.is_smooth() {
+            break;
+        }
+        settings = settings.finer();
+    }
+    for _ in 0..settings.polish {
+        polish(kernel, goal, settings.correction, curve);
+    }
+    curve.measure();
+}
+
+fn trace_once<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
     start: &[f64; N],
@@ -87,10 +123,6 @@ pub(crate) fn trace<const N: usize, const M: usize>(
         curve.status = status_of(ending, Some(back));
         join(curve, other);
     }
-    for _ in 0..settings.polish {
-        polish(kernel, goal, curve);
-    }
-    curve.measure();
 }
 
 fn status_of(forward: Ending, backward: Option<Ending>) -> CurveStatus {
@@ -171,6 +203,7 @@ fn march<const N: usize, const M: usize>(
     for _ in 0..settings.max_steps {
         if !march.advance() {
             if march.step >= LEAST_STEP {
+                march.settle(curve);
                 continue;
             }
             if !march.cross_singularity() {
@@ -181,14 +214,15 @@ fn march<const N: usize, const M: usize>(
         vertices += 1;
         curve.push(march.point, march.tangents[0]);
         if vertices > 3
-            && let Some(end) = closure(curve)
+            && let Some(end) = march.back_at_start(curve)
         {
             let last = curve.points.len() - 1;
             curve.points[last] = end;
             curve.tangents[last] = curve.tangents[0];
             return Ending::Closed;
         }
-        if march.left_stroke() {
+        if let Some(joint) = march.left_stroke() {
+            march.end_at_stroke(curve, joint);
             return Ending::Stroke;
         }
     }
@@ -196,7 +230,7 @@ fn march<const N: usize, const M: usize>(
 }
 
 /// If the start lies on the newest segment (modulo full turns): the start, unwrapped.
-fn closure<const N: usize>(curve: &Curve<N>) -> Option<[f64; N]> {
+fn closure<const N: usize>(curve: &Curve<N>) -> Option<(Segment<N>, f64, [f64; N])> {
     let (start, last) = (&curve.points[0], curve.points.len() - 1);
     let (from, to) = (&curve.points[last - 1], &curve.points[last]);
     let mut gap = 0.0;
@@ -212,9 +246,8 @@ fn closure<const N: usize>(curve: &Curve<N>) -> Option<[f64; N]> {
     }
     let lifted: [f64; N] = std::array::from_fn(|k| to[k] + short_way(start[k] - to[k]));
     let segment = Segment::new(from, to, &curve.tangents[last - 1], &curve.tangents[last]);
-    let (_, miss) = segment.project(&lifted)?;
-    (miss < 2e-3 + 0.005 * chord.sqrt())
-        .then(|| std::array::from_fn(|k| start[k] + ((lifted[k] - start[k]) / TAU).round() * TAU))
+    let (u, miss) = segment.project(&lifted)?;
+    (miss < 2e-3 + 0.005 * chord.sqrt()).then_some((segment, u, lifted))
 }
 
 impl<const N: usize, const M: usize> March<'_, N, M> {
@@ -235,6 +268,29 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
             .min(self.settings.max_step)
             .min(self.turn_limit(h));
         true
+    }
+
+    /// Corrects the vertex at which a step has failed once more.
+    ///
+    /// What the first correction left is negligible for the vertex but not for the ever smaller
+    /// steps around a sharp bend, where it would pass for the step's own error.
+    fn settle(&mut self, curve: &mut Curve<N>) {
+        let Some(newton) = probe(self.kernel, &self.point, self.goal) else {
+            return;
+        };
+        let correction = dot(&newton.correction, &newton.correction).sqrt();
+        let tangent = newton.tangent.map(|t| t * self.sense);
+        let small = correction <= self.settings.correction;
+        let last = curve.points.len() - 1;
+        if last == 0 || !small || dot(&tangent, &self.tangents[0]) < self.settings.max_turn.cos() {
+            return;
+        }
+        for k in 0..N {
+            self.point[k] += newton.correction[k];
+        }
+        self.tangents[0] = tangent;
+        curve.points[last] = self.point;
+        curve.tangents[last] = tangent;
     }
 
     /// The step at which the tangent would turn by three quarters of what is allowed.
@@ -297,12 +353,13 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
             let Some((point, newton)) = correct(self.kernel, self.goal, &guess) else {
                 continue;
             };
-            let tangent = newton.tangent.map(|t| -t * self.sense);
+            // At a simple node the field turns round, at others it need not.
+            let along = dot(&newton.tangent, &self.tangents[0]);
+            let tangent = newton.tangent.map(|t| t * along.signum());
             let moved: [f64; N] = std::array::from_fn(|k| point[k] - guess[k]);
-            let straight = dot(&tangent, &self.tangents[0]) > 0.95;
-            if straight && dot(&moved, &moved).sqrt() < 0.2 * h {
+            if along.abs() > 0.95 && dot(&moved, &moved).sqrt() < 0.2 * h {
                 self.point = point;
-                self.sense = -self.sense;
+                self.sense = along.signum();
                 self.tangents = [tangent; 3];
                 self.steps = [h; 2];
                 self.step = h;
@@ -312,10 +369,77 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
         false
     }
 
-    /// Whether a prismatic joint has left its stroke.
-    fn left_stroke(&self) -> bool {
-        (0..N).any(|k| !self.kernel.is_revolute(k) && self.point[k].abs() > FRAC_PI_2)
+    /// The start, unwrapped, if the newest segment runs through it.
+    ///
+    /// Another strand may pass so near that only the manifold itself tells: from the segment,
+    /// Newton steps within the plane across the start must lead to the start.
+    fn back_at_start(&self, curve: &Curve<N>) -> Option<[f64; N]> {
+        let (segment, u, start) = closure(curve)?;
+        let across = &curve.tangents[0];
+        let mut point = segment.at(u);
+        for _ in 0..5 {
+            let Some(newton) = probe(self.kernel, &point, self.goal) else {
+                break;
+            };
+            let tangent = newton.tangent.map(|t| t * self.sense);
+            let along = dot(&tangent, across);
+            if along < 0.5 {
+                return None;
+            }
+            let moved: [f64; N] = std::array::from_fn(|k| point[k] + newton.correction[k]);
+            let ahead: f64 = (0..N).map(|k| (start[k] - moved[k]) * across[k]).sum();
+            point = std::array::from_fn(|k| moved[k] + tangent[k] * ahead / along);
+        }
+        let miss: [f64; N] = std::array::from_fn(|k| point[k] - start[k]);
+        let first = &curve.points[0];
+        (dot(&miss, &miss) < 1e-10)
+            .then(|| std::array::from_fn(|k| first[k] + full_turns(start[k] - first[k])))
     }
+
+    /// The prismatic joint that has left its stroke.
+    fn left_stroke(&self) -> Option<usize> {
+        (0..N).find(|&k| !self.kernel.is_revolute(k) && self.point[k].abs() > FRAC_PI_2)
+    }
+
+    /// Moves the newest vertex, beyond the stroke of `joint`, back to its end.
+    fn end_at_stroke(&mut self, curve: &mut Curve<N>, joint: usize) {
+        let last = curve.points.len() - 1;
+        let limit = FRAC_PI_2.copysign(self.point[joint]);
+        let segment = curve.segment(last - 1);
+        let (mut inside, mut outside) = (0.0, 1.0);
+        for _ in 0..40 {
+            let middle = 0.5 * (inside + outside);
+            if segment.coordinate(joint, middle).abs() < FRAC_PI_2 {
+                inside = middle;
+            } else {
+                outside = middle;
+            }
+        }
+        let mut point = segment.at(inside);
+        let mut tangent = self.tangents[0];
+        for _ in 0..4 {
+            let Some(newton) = probe(self.kernel, &point, self.goal) else {
+                break;
+            };
+            tangent = newton.tangent.map(|t| t * self.sense);
+            let ahead = limit - point[joint] - newton.correction[joint];
+            let step = (ahead / tangent[joint]).clamp(-0.1, 0.1);
+            for k in 0..N {
+                point[k] += newton.correction[k] + step * tangent[k];
+            }
+        }
+        // Where the joint turns round just at its end, the steps may not converge.
+        if (point[joint] - limit).abs() < 1e-9 && dot(&tangent, &self.tangents[0]) > 0.5 {
+            point[joint] = limit;
+            curve.points[last] = point;
+            curve.tangents[last] = tangent;
+        }
+    }
+}
+
+/// The multiple of a full turn next to `angle`.
+fn full_turns(angle: f64) -> f64 {
+    (angle / TAU).round() * TAU
 }
 
 /// The factor by which the step may change, from the size of the last correction, which grows
@@ -325,8 +449,8 @@ fn growth(correction: f64, allowed: f64) -> f64 {
     ratio.sqrt().sqrt().clamp(0.5, 1.7)
 }
 
-/// Newton steps from `guess` onto the manifold.
-fn correct<const N: usize, const M: usize>(
+/// Newton steps from `guess` onto the manifold; `None` if they do not converge.
+pub(crate) fn correct<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
     guess: &[f64; N],
@@ -342,7 +466,8 @@ fn correct<const N: usize, const M: usize>(
         for k in 0..N {
             point[k] += newton.correction[k];
         }
-        if size < 1e-11 {
+        // The next one would be about the square.
+        if size < 1e-6 {
             return Some((point, newton));
         }
     }
@@ -353,19 +478,29 @@ fn correct<const N: usize, const M: usize>(
 fn polish<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
+    allowed: f64,
     curve: &mut Curve<N>,
 ) {
-    for index in 0..curve.points.len() {
+    let ends = if curve.status == CurveStatus::Stroke {
+        1
+    } else {
+        0
+    };
+    for index in ends..curve.points.len() - ends {
         let point = curve.points[index];
         let Some(newton) = probe(kernel, &point, goal) else {
             continue;
         };
         let size = dot(&newton.correction, &newton.correction);
-        if !(size < 1e-4) {
+        if !(size <= allowed * allowed) {
             continue;
         }
         let old = curve.tangents[index];
         let sense = dot(&newton.tangent, &old).signum();
+        if sense < 0.0 && curve.crossings.is_empty() {
+            // The step led to a neighbouring strand.
+            continue;
+        }
         curve.points[index] = std::array::from_fn(|k| point[k] + newton.correction[k]);
         curve.tangents[index] = newton.tangent.map(|t| t * sense);
     }
@@ -373,8 +508,7 @@ fn polish<const N: usize, const M: usize>(
         // Both ends are the same configuration; keep them equal to the last bit but the turns.
         let last = curve.points.len() - 1;
         let (first, end) = (curve.points[0], curve.points[last]);
-        curve.points[last] =
-            std::array::from_fn(|k| first[k] + ((end[k] - first[k]) / TAU).round() * TAU);
+        curve.points[last] = std::array::from_fn(|k| first[k] + full_turns(end[k] - first[k]));
         curve.tangents[last] = curve.tangents[0];
     }
 }

@@ -73,7 +73,12 @@ pub fn planar(lengths: &[f64]) -> Robot {
 
 /// Turning column, sliding column, two-link forearm.
 pub fn sliding() -> Robot {
-    let table = [[90.0, 0.2, 0.3], [60.0, 0.1, 0.0], [80.0, 0.5, 0.1], [0.0, 0.4, 0.0]];
+    let table = [
+        [90.0, 0.2, 0.3],
+        [60.0, 0.1, 0.0],
+        [80.0, 0.5, 0.1],
+        [0.0, 0.4, 0.0],
+    ];
     let mut robot = rows(Convention::Standard, &table);
     if let Geometry::Rows { joints, .. } = &mut robot.geometry {
         joints[1].kind = JointKind::Prismatic;
@@ -215,13 +220,19 @@ pub fn all() -> Vec<Arm> {
     use TaskSpace::{PlanarPose, PlanarPosition, SpatialPose, SpatialPosition};
     let held = |name, joint, value| Arm {
         name,
-        chain: Chain::new(&bader_8r()).expect("revolute").locked(joint, value),
+        chain: Chain::new(&bader_8r())
+            .expect("revolute")
+            .locked(joint, value),
         task: SpatialPose,
     };
     vec![
         Arm::new("planar 3R, equal links", &planar(&[1.0; 3]), PlanarPosition),
         Arm::new("planar 3R", &planar(&[1.0, 0.8, 0.45]), PlanarPosition),
-        Arm::new("planar 4R pose, equal links", &planar(&[1.0; 4]), PlanarPose),
+        Arm::new(
+            "planar 4R pose, equal links",
+            &planar(&[1.0; 4]),
+            PlanarPose,
+        ),
         Arm::new("planar 4R pose", &planar(&[1.0, 0.9, 0.6, 0.3]), PlanarPose),
         Arm::new("spatial 4R", &spatial_4r(), SpatialPosition),
         Arm::new("R-P-R-R", &sliding(), SpatialPosition),
