@@ -4,6 +4,9 @@ use super::curve::{Curve, CurveStatus, wrapped};
 use super::seeds::{Seed, Seeder};
 use super::trace::{TraceSettings, correct, trace};
 use crate::kinematics::{Goal, Kernel, Lanes};
+use crate::sampling::stream;
+use nalgebra::{DMatrix, SMatrix};
+use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 /// How long manifolds are looked for.
@@ -83,6 +86,27 @@ impl<const N: usize, const M: usize> Solver<N, M> {
             seeds: 0,
             landed: 0,
         }
+    }
+
+    /// The greatest rank of the Jacobian over a few random configurations: the rank almost
+    /// everywhere.
+    pub fn rank(&self) -> usize {
+        let mut rng = stream(0, 0);
+        let goal = Goal {
+            position: [0.0; 3],
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        };
+        let mut rank = |_| {
+            let theta: [f64; N] = std::array::from_fn(|_| rng.random_range(-1.5..1.5));
+            let rows = self.kernel.linearise(&theta, &goal).jacobian;
+            let jacobian = SMatrix::<f64, M, N>::from_fn(|i, j| rows[i][j]);
+            let gram: SMatrix<f64, M, M> = jacobian * jacobian.transpose();
+            // Squares of the singular values; their round-off is 1e-16 of the largest.
+            let squares = DMatrix::from_fn(M, M, |i, j| gram[(i, j)]).symmetric_eigenvalues();
+            let least = 1e-13 * squares.max();
+            squares.iter().filter(|&&square| square > least).count()
+        };
+        (0..4).map(&mut rank).max().unwrap_or(0)
     }
 
     /// The curves of the last task point.
