@@ -7,7 +7,10 @@
 //! Knows nothing of grids, volumes or rotations about joint 1.
 
 mod any_solver;
+mod correct;
 mod curve;
+mod march;
+mod march_end;
 mod pre_image;
 mod seeds;
 mod segment;

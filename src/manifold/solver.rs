@@ -1,8 +1,9 @@
 //! All self-motion manifolds of one task point, for robots with one degree of redundancy.
 
+use super::correct::correct;
 use super::curve::{Curve, CurveStatus, wrapped};
 use super::seeds::{Seed, Seeder};
-use super::trace::{TraceSettings, correct, trace};
+use super::trace::{TraceSettings, trace};
 use crate::kinematics::{Goal, Kernel, Lanes};
 use crate::sampling::stream;
 use nalgebra::{DMatrix, SMatrix};
