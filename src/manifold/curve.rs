@@ -4,7 +4,7 @@ use super::segment::Segment;
 use crate::angle::{Arc, wrap};
 use crate::kinematics::dot;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// How tracing a curve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -169,16 +169,18 @@ impl<const N: usize> Curve<N> {
         let tangent = tangent.filter(|_| self.crossings.is_empty());
         // A point of a segment is no farther from the nearer end than half the segment.
         let near = 0.55 * self.longest + tolerance;
+        let stride = self.longest.max(1e-9);
         let mut best: Option<(usize, f64, f64)> = None;
-        for (index, vertex) in self.points.iter().enumerate() {
-            let mut square = 0.0;
-            for k in 0..N {
-                let d = short_way(point[k] - vertex[k]);
-                square += d * d;
-            }
-            if square > near * near {
+        let mut next = 0;
+        while let Some(vertex) = self.points.get(next) {
+            let index = next;
+            let gap = distance(point, vertex);
+            if gap > near {
+                // No vertex before can be near: each is at most the longest segment farther on.
+                next += 1 + ((gap - near) / stride) as usize;
                 continue;
             }
+            next += 1;
             let lifted: [f64; N] =
                 std::array::from_fn(|k| vertex[k] + short_way(point[k] - vertex[k]));
             for segment in [index.wrapping_sub(1), index] {
@@ -217,7 +219,7 @@ pub(crate) fn short_way(difference: f64) -> f64 {
     difference - turns * TAU
 }
 
-/// Whether a distance modulo full turns is below `limit`.
+/// Distance modulo full turns.
 pub(crate) fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     let d: [f64; N] = std::array::from_fn(|k| short_way(a[k] - b[k]));
     dot(&d, &d).sqrt()
@@ -231,6 +233,7 @@ pub(crate) fn wrapped<const N: usize>(point: &[f64; N]) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn the_short_way_is_short() {

@@ -51,8 +51,8 @@ impl SelfMotionManifold {
             status: curve.status,
             length: curve.length,
             winding: curve.winding.to_vec(),
-            points: curve.points.iter().flatten().copied().collect(),
-            tangents: curve.tangents.iter().flatten().copied().collect(),
+            points: curve.points.as_flattened().to_vec(),
+            tangents: curve.tangents.as_flattened().to_vec(),
             crossings: curve.crossings.clone(),
             hits,
         }
