@@ -41,7 +41,11 @@ fn reachable(search: &mut PreImageSearch, radius: f64, count: usize) -> Vec<Isom
 fn pre_images(c: &mut Criterion) {
     let arms: [(&str, Robot, TaskSpace); 3] = [
         ("7R pose", arms::bader_7r(), TaskSpace::SpatialPose),
-        ("4R position", arms::spatial_4r(), TaskSpace::SpatialPosition),
+        (
+            "4R position",
+            arms::spatial_4r(),
+            TaskSpace::SpatialPosition,
+        ),
         ("PA-10 pose", arms::pa10(), TaskSpace::SpatialPose),
     ];
     for (name, robot, task) in arms {
