@@ -347,6 +347,28 @@ fn a_few_poses_of_every_arm() {
     }
 }
 
+/// A pre-image depends on the pose and its random stream alone, not on what was found before.
+#[test]
+fn searches_can_be_repeated() {
+    let mut rng = stream(5, 0);
+    for arm in arms::all() {
+        let search = |settings| {
+            PreImageSearch::from_chain(arm.chain.clone(), arm.task, settings).expect("redundancy 1")
+        };
+        let mut used = search(SearchSettings::coarse());
+        for index in 0..5 {
+            let pose = arm.random_pose(&mut rng);
+            let fresh = search(SearchSettings::coarse()).find(&pose, &mut stream(6, index));
+            assert_eq!(
+                used.find(&pose, &mut stream(6, index)),
+                fresh,
+                "{}",
+                arm.name
+            );
+        }
+    }
+}
+
 /// Are estimates of completeness right to an order of magnitude, in the mean? Searches of far
 /// too little effort make the misses that are counted.
 #[test]

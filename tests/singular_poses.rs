@@ -2,6 +2,7 @@
 //! each other, isolated points, surfaces. The search must end, report what it cannot resolve and
 //! drop nothing silently.
 
+#[allow(dead_code)]
 mod arms;
 
 use arms::Arm;
@@ -212,6 +213,26 @@ fn wrists_and_shoulders_in_line() {
                     "{} {theta:?}",
                     arm.name
                 );
+            }
+        }
+    }
+}
+
+/// With joint 2 straight, joints 1 and 3 turn against each other about one axis: a line of
+/// configurations that sweeping the elbow alone does not find. It crosses the elbow's curve.
+#[test]
+fn pole_lines_are_found() {
+    for arm in wrists().iter().take(2) {
+        for settings in [SearchSettings::default(), SearchSettings::coarse()] {
+            let theta = [0.3, 0.0, -1.1, 0.7, 0.4, -0.8, 1.1];
+            let found = find(&arm.chain, arm.task, &arm.chain.tool(&theta), settings);
+            assert!(found.manifolds.iter().any(|m| !m.crossings.is_empty()));
+            for step in 0..200 {
+                let mut other = theta;
+                let turn = 0.0314 * step as f64;
+                other[0] += turn;
+                other[2] -= turn;
+                assert!(holds(&found, &other, 5e-3), "{} {other:?}", arm.name);
             }
         }
     }

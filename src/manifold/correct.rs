@@ -24,13 +24,10 @@ pub(super) fn correct<const N: usize, const M: usize>(
     for _ in 0..12 {
         let newton = probe(kernel, &point, goal)?;
         let size = dot(&newton.correction, &newton.correction).sqrt();
-        // NaN and runaway corrections alike.
-        if !(size < 0.1) {
+        if size.is_nan() || size >= 0.1 {
             return None;
         }
-        for k in 0..N {
-            point[k] += newton.correction[k];
-        }
+        point = std::array::from_fn(|k| point[k] + newton.correction[k]);
         // The next one would be about the square.
         if size < 1e-6 {
             return Some((point, newton));
@@ -57,7 +54,7 @@ pub(super) fn polish<const N: usize, const M: usize>(
             continue;
         };
         let size = dot(&newton.correction, &newton.correction);
-        if !(size <= allowed * allowed) {
+        if size.is_nan() || size > allowed * allowed {
             continue;
         }
         let old = curve.tangents[index];

@@ -87,9 +87,9 @@ impl<const N: usize> Segment<N> {
                 return None;
             }
             let (mut along, mut speed) = (0.0, 0.0);
-            for k in 0..N {
+            for (k, coordinate) in point.iter().enumerate() {
                 let slope = self.slope(k, u);
-                along += (point[k] - self.coordinate(k, u)) * slope;
+                along += (coordinate - self.coordinate(k, u)) * slope;
                 speed += slope * slope;
             }
             let step = along / speed.max(1e-300);

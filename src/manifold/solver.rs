@@ -168,13 +168,7 @@ impl<const N: usize, const M: usize> Solver<N, M> {
 
     /// Sum of the winding vectors of all closed curves, which run along the cofactor field.
     pub fn winding_sum(&self) -> [i32; N] {
-        let mut sum = [0; N];
-        for curve in self.curves() {
-            for k in 0..N {
-                sum[k] += curve.winding[k];
-            }
-        }
-        sum
+        std::array::from_fn(|k| self.curves().iter().map(|curve| curve.winding[k]).sum())
     }
 
     /// Whether every curve closed smoothly (or ends at a stroke) and the winding vectors sum to
