@@ -319,17 +319,18 @@ fn environment(name: &str, default: u64) -> u64 {
     value.unwrap_or(default)
 }
 
-/// `ARM`, `POSES` and `TELL` in the environment choose arms by a part of their name, the number
-/// of poses, and a listing of all that is amiss.
+/// `ARM`, `POSES`, `TIMES` and `TELL` in the environment choose arms by a part of their name, the
+/// number of poses, the effort of the long search, and a listing of all that is amiss.
 #[test]
 #[ignore = "takes minutes"]
 fn every_manifold_of_every_arm() {
     let poses = environment("POSES", 1000);
+    let times = environment("TIMES", 20) as usize;
     let only = std::env::var("ARM").unwrap_or_default();
     let tell = std::env::var("TELL").is_ok();
     for arm in arms::all().iter().filter(|arm| arm.name.contains(&only)) {
         for promise in promises() {
-            let tally = study(arm, promise.settings, 20, poses, tell);
+            let tally = study(arm, promise.settings, times, poses, tell);
             tally.print(arm.name, promise.label);
             tally.assert_keeps(&promise, &format!("{}, {}", arm.name, promise.label));
         }
