@@ -1,7 +1,7 @@
 //! A self-motion manifold as results show it, and what is measured on it.
 
 use super::curve::{Curve, CurveStatus};
-use super::segment::Segment;
+use super::segment::{Segment, arc_length};
 use crate::angle::{AngleSet, Arc};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -88,7 +88,7 @@ impl SelfMotionManifold {
             chord: [b[joint] - a[joint]],
             first: [s[joint]],
             last: [t[joint]],
-            length: square([a, b]).sqrt() * (1.0 + square([s, t]) / 24.0),
+            length: arc_length(square([a, b]), square([s, t])),
         }
     }
 
