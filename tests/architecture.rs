@@ -5,12 +5,13 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every module with all it may import from, in order: a module may only name earlier ones.
-const MODULES: [(&str, &[&str]); 11] = [
+const MODULES: [(&str, &[&str]); 12] = [
     ("angle", &[]),
     ("sampling", &[]),
     ("diagnostic", &[]),
     ("design", &["angle", "sampling", "diagnostic"]),
     ("kinematics", &["design"]),
+    ("manifold", &["angle", "sampling", "design", "kinematics"]),
     ("workspace", &["angle", "sampling", "kinematics"]),
     (
         "objective",

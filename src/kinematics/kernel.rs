@@ -74,12 +74,18 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
         let mut p = [zero; 3];
         let mut axes = [[zero; 3]; N];
         let mut origins = [[zero; 3]; N];
+        // All sines and cosines first, which the compiler can turn into vectors.
+        let (mut sines, mut cosines) = ([zero; N], [zero; N]);
+        for (k, joint) in self.joints.iter().enumerate() {
+            T::keep_loop();
+            let angle = theta[k] * T::constant(joint.turn) + T::constant(joint.offset);
+            (sines[k], cosines[k]) = angle.sin_cos();
+        }
         for (k, joint) in self.joints.iter().enumerate() {
             T::keep_loop();
             axes[k] = z;
             origins[k] = p;
-            let angle = theta[k] * T::constant(joint.turn) + T::constant(joint.offset);
-            let (s, c) = angle.sin_cos();
+            let (s, c) = (sines[k], cosines[k]);
             let [a, b, d] = joint.arm.map(T::constant);
             let d = d + theta[k] * T::constant(joint.slide);
             let [cos, sin] = joint.twist.map(T::constant);

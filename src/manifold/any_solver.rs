@@ -47,6 +47,11 @@ impl AnySolver {
         each!(self, solver => solver.solve(goal, settings, rng));
     }
 
+    /// Rank of the Jacobian at a random configuration; below m, the task is degenerate.
+    pub fn rank(&self) -> usize {
+        each!(self, solver => solver.rank())
+    }
+
     /// Starts made, and starts that landed.
     pub fn effort(&self) -> (usize, usize) {
         each!(self, solver => (solver.seeds, solver.landed))

@@ -4,7 +4,7 @@ use super::segment::Segment;
 use crate::angle::{Arc, wrap};
 use crate::kinematics::dot;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::TAU;
 
 /// How tracing a curve ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -25,7 +25,7 @@ pub enum CurveStatus {
 pub(crate) struct Curve<const N: usize> {
     /// Vertices, internal joint variables, unwrapped along the curve.
     pub points: Vec<[f64; N]>,
-    /// Unit tangents at the vertices, in the direction of the cofactor field at the start.
+    /// Unit tangents at the vertices (0 at an isolated singular configuration), in the direction of the cofactor field at the start.
     pub tangents: Vec<[f64; N]>,
     pub status: CurveStatus,
     /// Full turns of every joint along a closed curve.
@@ -64,6 +64,12 @@ impl<const N: usize> Curve<N> {
     pub fn push(&mut self, point: [f64; N], tangent: [f64; N]) {
         self.points.push(point);
         self.tangents.push(tangent);
+    }
+
+    /// Whether the curve closed, or ended at a stroke, without a singular configuration.
+    pub fn is_smooth(&self) -> bool {
+        let ended = matches!(self.status, CurveStatus::Closed | CurveStatus::Stroke);
+        ended && self.crossings.is_empty()
     }
 
     /// Number of segments.
@@ -147,19 +153,34 @@ impl<const N: usize> Curve<N> {
 
     /// The segment on which `point` (modulo full turns) lies within `tolerance`, with the
     /// parameter on it.
-    pub fn locate(&self, point: &[f64; N], tolerance: f64) -> Option<(usize, f64)> {
+    ///
+    /// Where two strands run past each other closer than that, `tangent`, the cofactor field at
+    /// the point, tells them apart: neighbours are oriented oppositely. Pass `None` if it is not
+    /// known; it is not looked at on curves through singular configurations, which change sign.
+    pub fn locate(
+        &self,
+        point: &[f64; N],
+        tangent: Option<&[f64; N]>,
+        tolerance: f64,
+    ) -> Option<(usize, f64)> {
+        if let [only] = self.points.as_slice() {
+            return (distance(only, point) < tolerance).then_some((0, 0.0));
+        }
+        let tangent = tangent.filter(|_| self.crossings.is_empty());
         // A point of a segment is no farther from the nearer end than half the segment.
         let near = 0.55 * self.longest + tolerance;
+        let stride = self.longest.max(1e-9);
         let mut best: Option<(usize, f64, f64)> = None;
-        for (index, vertex) in self.points.iter().enumerate() {
-            let mut square = 0.0;
-            for k in 0..N {
-                let d = short_way(point[k] - vertex[k]);
-                square += d * d;
-            }
-            if square > near * near {
+        let mut next = 0;
+        while let Some(vertex) = self.points.get(next) {
+            let index = next;
+            let gap = distance(point, vertex);
+            if gap > near {
+                // No vertex before can be near: each is at most the longest segment farther on.
+                next += 1 + ((gap - near) / stride) as usize;
                 continue;
             }
+            next += 1;
             let lifted: [f64; N] =
                 std::array::from_fn(|k| vertex[k] + short_way(point[k] - vertex[k]));
             for segment in [index.wrapping_sub(1), index] {
@@ -169,6 +190,7 @@ impl<const N: usize> Curve<N> {
                 if let Some((u, miss)) = self.segment(segment).project(&lifted)
                     && miss < tolerance
                     && best.is_none_or(|(_, _, least)| miss < least)
+                    && tangent.is_none_or(|tangent| self.runs_along(segment, u, tangent))
                 {
                     best = Some((segment, u, miss));
                 }
@@ -181,6 +203,14 @@ impl<const N: usize> Curve<N> {
     }
 }
 
+impl<const N: usize> Curve<N> {
+    fn runs_along(&self, segment: usize, u: f64, tangent: &[f64; N]) -> bool {
+        let first = dot(&self.tangents[segment], tangent);
+        let last = dot(&self.tangents[segment + 1], tangent);
+        (1.0 - u) * first + u * last > 0.0
+    }
+}
+
 /// The difference of two angles taken the short way, in [−π, π].
 #[inline(always)]
 pub(crate) fn short_way(difference: f64) -> f64 {
@@ -189,7 +219,7 @@ pub(crate) fn short_way(difference: f64) -> f64 {
     difference - turns * TAU
 }
 
-/// Whether a distance modulo full turns is below `limit`.
+/// Distance modulo full turns.
 pub(crate) fn distance<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
     let d: [f64; N] = std::array::from_fn(|k| short_way(a[k] - b[k]));
     dot(&d, &d).sqrt()
@@ -203,6 +233,7 @@ pub(crate) fn wrapped<const N: usize>(point: &[f64; N]) -> [f64; N] {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use std::f64::consts::PI;
 
     #[test]
     fn the_short_way_is_short() {

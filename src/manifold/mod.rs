@@ -9,7 +9,10 @@
 
 mod any_solver;
 mod ascent;
+mod correct;
 mod curve;
+mod march;
+mod march_end;
 mod pre_image;
 mod seeds;
 mod segment;

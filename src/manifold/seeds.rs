@@ -39,7 +39,7 @@ pub(crate) enum Seed<const N: usize> {
 }
 
 impl<const N: usize> Seeder<N> {
-    pub fn new(rng: &mut ChaCha8Rng) -> Seeder<N> {
+    pub fn new<const M: usize>(kernel: &Kernel<N, M>, rng: &mut ChaCha8Rng) -> Seeder<N> {
         let mut seeder = Seeder {
             theta: [Lanes::constant(0.0); N],
             age: [0; LANES],
@@ -47,14 +47,16 @@ impl<const N: usize> Seeder<N> {
             tried: 0,
         };
         for lane in 0..LANES {
-            seeder.draw(lane, rng);
+            seeder.draw(kernel, lane, rng);
         }
         seeder
     }
 
-    fn draw(&mut self, lane: usize, rng: &mut ChaCha8Rng) {
-        for coordinate in &mut self.theta {
-            coordinate.0[lane] = rng.random_range(-PI..PI);
+    /// A uniform start: on the circle, or in the stroke.
+    fn draw<const M: usize>(&mut self, kernel: &Kernel<N, M>, lane: usize, rng: &mut ChaCha8Rng) {
+        for (k, coordinate) in self.theta.iter_mut().enumerate() {
+            let half = if kernel.is_revolute(k) { PI } else { 0.5 * PI };
+            coordinate.0[lane] = rng.random_range(-half..half);
         }
         self.age[lane] = 0;
         self.mark[lane] = f64::INFINITY;
@@ -88,7 +90,7 @@ impl<const N: usize> Seeder<N> {
                 });
                 self.tried += 1;
                 ended = true;
-                self.draw(lane, rng);
+                self.draw(kernel, lane, rng);
             }
             if ended {
                 return;

@@ -13,12 +13,17 @@ pub(crate) struct Segment<const N: usize> {
     pub length: f64,
 }
 
+/// Length of a circular arc from the squares of its chord and of the difference t of its unit
+/// tangents: chord · asin(t/2) / (t/2), to O(t⁶).
+pub(crate) fn arc_length(chord: f64, turn: f64) -> f64 {
+    chord.sqrt() * (1.0 + turn * (1.0 / 24.0 + turn * (3.0 / 640.0)))
+}
+
 impl<const N: usize> Segment<N> {
     pub fn new(start: &[f64; N], end: &[f64; N], first: &[f64; N], last: &[f64; N]) -> Segment<N> {
         let chord: [f64; N] = std::array::from_fn(|k| end[k] - start[k]);
         let turn: [f64; N] = std::array::from_fn(|k| last[k] - first[k]);
-        // A circular arc is longer than its chord by the factor 1 + turn²/24 + O(turn⁴).
-        let length = dot(&chord, &chord).sqrt() * (1.0 + dot(&turn, &turn) / 24.0);
+        let length = arc_length(dot(&chord, &chord), dot(&turn, &turn));
         Segment {
             start: *start,
             chord,
@@ -87,9 +92,9 @@ impl<const N: usize> Segment<N> {
                 return None;
             }
             let (mut along, mut speed) = (0.0, 0.0);
-            for k in 0..N {
+            for (k, coordinate) in point.iter().enumerate() {
                 let slope = self.slope(k, u);
-                along += (point[k] - self.coordinate(k, u)) * slope;
+                along += (coordinate - self.coordinate(k, u)) * slope;
                 speed += slope * slope;
             }
             let step = along / speed.max(1e-300);
@@ -131,8 +136,9 @@ mod tests {
         let [Some(u), None] = segment.extrema(0) else {
             panic!("one extremum of the cosine");
         };
+        // A step of 0.4 is the longest; the place is off by its cube, the value by its fourth power.
         assert!((u - 0.25).abs() < 2e-3, "{u}");
-        assert!((segment.coordinate(0, u) - 1.0).abs() < 1e-4);
+        assert!((segment.coordinate(0, u) - 1.0).abs() < 1e-5);
         assert_eq!(segment.extrema(1), [None, None]);
     }
 }

@@ -1,7 +1,7 @@
 //! A self-motion manifold as results show it, and what is measured on it.
 
 use super::curve::{Curve, CurveStatus};
-use super::segment::Segment;
+use super::segment::{Segment, arc_length};
 use crate::angle::{AngleSet, Arc};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -51,8 +51,8 @@ impl SelfMotionManifold {
             status: curve.status,
             length: curve.length,
             winding: curve.winding.to_vec(),
-            points: curve.points.iter().flatten().copied().collect(),
-            tangents: curve.tangents.iter().flatten().copied().collect(),
+            points: curve.points.as_flattened().to_vec(),
+            tangents: curve.tangents.as_flattened().to_vec(),
             crossings: curve.crossings.clone(),
             hits,
         }
@@ -68,14 +68,17 @@ impl SelfMotionManifold {
         &self.points[index * self.joints..][..self.joints]
     }
 
-    fn tangent(&self, index: usize) -> &[f64] {
+    /// Unit tangent at vertex `index`.
+    pub fn tangent(&self, index: usize) -> &[f64] {
         &self.tangents[index * self.joints..][..self.joints]
     }
 
     /// The cubic of coordinate `joint` alone, between vertices `index` and `index + 1`.
     fn coordinate(&self, index: usize, joint: usize) -> Segment<1> {
-        let (a, b) = (self.point(index), self.point(index + 1));
-        let (s, t) = (self.tangent(index), self.tangent(index + 1));
+        // An isolated configuration has no second vertex.
+        let next = (index + 1).min(self.vertices() - 1);
+        let (a, b) = (self.point(index), self.point(next));
+        let (s, t) = (self.tangent(index), self.tangent(next));
         let square = |pairs: [&[f64]; 2]| -> f64 {
             let both = pairs[0].iter().zip(pairs[1]);
             both.map(|(x, y)| (x - y) * (x - y)).sum()
@@ -85,8 +88,37 @@ impl SelfMotionManifold {
             chord: [b[joint] - a[joint]],
             first: [s[joint]],
             last: [t[joint]],
-            length: square([a, b]).sqrt() * (1.0 + square([s, t]) / 24.0),
+            length: arc_length(square([a, b]), square([s, t])),
         }
+    }
+
+    /// The segment on which `theta` lies within `tolerance` radians (modulo full turns of revolute
+    /// joints), with the parameter on it in [−0.03, 1.03].
+    pub fn locate(&self, theta: &[f64], tolerance: f64) -> Option<(usize, f64)> {
+        match self.joints {
+            3 => self
+                .curve::<3>()
+                .locate(theta.try_into().ok()?, None, tolerance),
+            4 => self
+                .curve::<4>()
+                .locate(theta.try_into().ok()?, None, tolerance),
+            _ => self
+                .curve::<7>()
+                .locate(theta.try_into().ok()?, None, tolerance),
+        }
+    }
+
+    fn curve<const N: usize>(&self) -> Curve<N> {
+        let mut curve = Curve::new();
+        for index in 0..self.vertices() {
+            let [point, tangent] = [self.point(index), self.tangent(index)];
+            curve.push(
+                std::array::from_fn(|k| point[k]),
+                std::array::from_fn(|k| tangent[k]),
+            );
+        }
+        curve.measure();
+        curve
     }
 
     /// Configuration on segment `index` at parameter `u` in [0, 1].

@@ -1,9 +1,13 @@
 //! All self-motion manifolds of one task point, for robots with one degree of redundancy.
 
-use super::curve::{Curve, CurveStatus, distance, wrapped};
+use super::correct::correct;
+use super::curve::{Curve, CurveStatus, wrapped};
 use super::seeds::{Seed, Seeder};
 use super::trace::{TraceSettings, trace};
 use crate::kinematics::{Goal, Kernel, Lanes};
+use crate::sampling::stream;
+use nalgebra::{DMatrix, SMatrix};
+use rand::Rng;
 use rand_chacha::ChaCha8Rng;
 
 /// How long manifolds are looked for.
@@ -11,6 +15,8 @@ use rand_chacha::ChaCha8Rng;
 pub struct SearchSettings {
     /// Starts that are always made.
     pub least_seeds: usize,
+    /// Starts more for every manifold found: where there are many, each is hit less often.
+    pub seeds_per_manifold: usize,
     /// Hits every manifold must have before the search ends: one that was found but once or
     /// twice suggests that others were missed.
     pub least_hits: usize,
@@ -23,30 +29,36 @@ pub struct SearchSettings {
 }
 
 impl Default for SearchSettings {
-    /// For single task points: misses about one manifold in 10⁴.
+    /// For single task points: misses a manifold at one in 10⁴.
     fn default() -> SearchSettings {
         SearchSettings {
-            least_seeds: 64,
-            least_hits: 5,
+            least_seeds: 128,
+            seeds_per_manifold: 8,
+            least_hits: 6,
             most_seeds: 1000,
-            unreachable_after: 100,
+            unreachable_after: 128,
             trace: TraceSettings::default(),
         }
     }
 }
 
 impl SearchSettings {
-    /// For many task points at once: about 99.7 % of them complete.
+    /// For many task points at once: at least 99.5 % of them complete.
     pub fn coarse() -> SearchSettings {
         SearchSettings {
-            least_seeds: 24,
-            least_hits: 3,
+            least_seeds: 32,
+            seeds_per_manifold: 8,
+            least_hits: 4,
             most_seeds: 300,
             unreachable_after: 32,
             trace: TraceSettings::coarse(),
         }
     }
 }
+
+/// Manifolds with a singular end after which a search stops: the task point then has a pre-image
+/// that is no set of curves, and every start would add another.
+const MOST_SINGULAR: usize = 16;
 
 /// Distance within which a solution lies on a known curve, internal radians.
 const ON_CURVE: f64 = 2e-3;
@@ -77,6 +89,27 @@ impl<const N: usize, const M: usize> Solver<N, M> {
         }
     }
 
+    /// The greatest rank of the Jacobian over a few random configurations: the rank almost
+    /// everywhere.
+    pub fn rank(&self) -> usize {
+        let mut rng = stream(0, 0);
+        let goal = Goal {
+            position: [0.0; 3],
+            axes: [[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]],
+        };
+        let mut rank = |_| {
+            let theta: [f64; N] = std::array::from_fn(|_| rng.random_range(-1.5..1.5));
+            let rows = self.kernel.linearise(&theta, &goal).jacobian;
+            let jacobian = SMatrix::<f64, M, N>::from_fn(|i, j| rows[i][j]);
+            let gram: SMatrix<f64, M, M> = jacobian * jacobian.transpose();
+            // Squares of the singular values; their round-off is 1e-16 of the largest.
+            let squares = DMatrix::from_fn(M, M, |i, j| gram[(i, j)]).symmetric_eigenvalues();
+            let least = 1e-13 * squares.max();
+            squares.iter().filter(|&&square| square > least).count()
+        };
+        (0..4).map(&mut rank).max().unwrap_or(0)
+    }
+
     /// The curves of the last task point.
     pub fn curves(&self) -> &[Curve<N>] {
         &self.curves[..self.found]
@@ -93,7 +126,7 @@ impl<const N: usize, const M: usize> Solver<N, M> {
         self.landed = 0;
         self.seeds = 0;
         let lanes: Goal<Lanes> = goal.splat();
-        let mut seeder = Seeder::new(rng);
+        let mut seeder = Seeder::new(&self.kernel, rng);
         let mut landed: Vec<[f64; N]> = Vec::with_capacity(8);
         while !self.is_done(settings) {
             landed.clear();
@@ -117,40 +150,46 @@ impl<const N: usize, const M: usize> Solver<N, M> {
         if self.landed == 0 {
             return self.seeds >= settings.unreachable_after;
         }
-        self.seeds >= settings.least_seeds
+        let singular = |curve: &&Curve<N>| !curve.is_smooth();
+        self.seeds >= settings.least_seeds + settings.seeds_per_manifold * self.found
             && self.hits().iter().all(|&hits| hits >= settings.least_hits)
-            && self.winding_sum().iter().all(|&sum| sum == 0)
+            && !self.is_unbalanced()
+            || self.curves().iter().filter(singular).count() >= MOST_SINGULAR
+    }
+
+    /// Whether the winding vectors prove that something is missing or wrong. They prove nothing
+    /// if curves end at strokes, lie outside them, or run through singular configurations.
+    fn is_unbalanced(&self) -> bool {
+        let closed = |curve: &Curve<N>| curve.is_smooth() && curve.status == CurveStatus::Closed;
+        (0..N).all(|joint| self.kernel.is_revolute(joint))
+            && self.curves().iter().all(closed)
+            && self.winding_sum() != [0; N]
     }
 
     /// Sum of the winding vectors of all closed curves, which run along the cofactor field.
     pub fn winding_sum(&self) -> [i32; N] {
-        let mut sum = [0; N];
-        for curve in self.curves() {
-            for k in 0..N {
-                sum[k] += curve.winding[k];
-            }
-        }
-        sum
+        std::array::from_fn(|k| self.curves().iter().map(|curve| curve.winding[k]).sum())
     }
 
-    /// Whether every curve closed (or ends at a stroke) and the winding vectors sum to zero.
+    /// Whether every curve closed smoothly (or ends at a stroke) and the winding vectors sum to
+    /// zero.
     pub fn is_sound(&self) -> bool {
-        let closed = |curve: &Curve<N>| curve.status == CurveStatus::Closed;
-        let stroke = |curve: &Curve<N>| curve.status == CurveStatus::Stroke;
-        let curves = self.curves();
-        curves.iter().all(|curve| closed(curve) || stroke(curve))
-            && (curves.iter().any(stroke)
-                || curves.iter().any(|curve| !curve.crossings.is_empty())
-                || self.winding_sum() == [0; N])
+        self.curves().iter().all(Curve::is_smooth) && !self.is_unbalanced()
     }
 
-    /// Counts `point` for the curve it lies on, or traces its own.
-    fn assign(&mut self, goal: &Goal<f64>, point: &[f64; N], settings: &SearchSettings) {
-        let known = self
-            .curves()
-            .iter()
-            .position(|curve| curve.locate(point, ON_CURVE).is_some());
-        if let Some(index) = known {
+    /// Counts `seed` for the curve it lies on, or traces its own.
+    fn assign(&mut self, goal: &Goal<f64>, seed: &[f64; N], settings: &SearchSettings) {
+        // Newton steps fail only next to singular configurations.
+        let corrected = correct(&self.kernel, goal, seed);
+        let near = if corrected.is_some() {
+            ON_CURVE
+        } else {
+            5.0 * ON_CURVE
+        };
+        let point = corrected.map_or(*seed, |(point, _)| point);
+        let tangent = corrected.map(|(_, newton)| newton.tangent);
+        let located = |curve: &Curve<N>| curve.locate(&point, tangent.as_ref(), near).is_some();
+        if let Some(index) = self.curves().iter().position(located) {
             self.hits[index] += 1;
             return;
         }
@@ -158,7 +197,7 @@ impl<const N: usize, const M: usize> Solver<N, M> {
             self.curves.push(Curve::new());
             self.hits.push(0);
         }
-        let start = wrapped(point);
+        let start = wrapped(&point);
         let (old, new) = self.curves.split_at_mut(self.found);
         let curve = &mut new[0];
         trace(&self.kernel, goal, &start, &settings.trace, curve);
@@ -173,15 +212,16 @@ impl<const N: usize, const M: usize> Solver<N, M> {
     }
 }
 
-/// Whether two traces follow the same curve.
+/// Whether two traces follow the same curve: samples of the new one lie on the old one.
 fn is_same<const N: usize>(old: &Curve<N>, new: &Curve<N>) -> bool {
-    let start = &old.points[old.points.len() / 2];
-    if old.status != new.status || (old.length - new.length).abs() > 0.01 * old.length {
+    if old.status != new.status || (old.length - new.length).abs() > 0.01 * old.length + 1e-3 {
         return false;
     }
-    if old.status == CurveStatus::Closed {
-        return new.locate(start, 2.0 * ON_CURVE).is_some();
-    }
-    new.locate(start, 2.0 * ON_CURVE).is_some()
-        || distance(start, &new.points[new.points.len() / 2]) < ON_CURVE
+    let step = new.points.len().div_ceil(8);
+    let smooth = old.is_smooth() && new.is_smooth();
+    (0..new.points.len()).step_by(step).all(|index| {
+        let tangent = smooth.then_some(&new.tangents[index]);
+        old.locate(&new.points[index], tangent, 2.0 * ON_CURVE)
+            .is_some()
+    })
 }

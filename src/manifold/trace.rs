@@ -1,14 +1,10 @@
-//! Follows one self-motion manifold from a configuration on it.
-//!
-//! Predictor: the quadratic through the last three tangents, integrated over the step. Corrector:
-//! one least-norm Newton step, whose size steers the step. The tangent's sign is intrinsic (see
-//! [`crate::kinematics::newton_step`]), so a jump to another strand nearby, which is oriented the
-//! other way, shows as a tangent that points back.
+//! Follows one self-motion manifold from a configuration on it, both ways if need be, and again
+//! with finer steps where it does not close.
 
-use super::curve::{Curve, CurveStatus, short_way};
-use super::segment::Segment;
-use crate::kinematics::{Goal, Kernel, NewtonStep, dot, newton_step};
-use std::f64::consts::{FRAC_PI_2, TAU};
+use super::correct::polish;
+use super::curve::{Curve, CurveStatus};
+use super::march::{Ending, march};
+use crate::kinematics::{Goal, Kernel};
 
 /// Accuracy and guards of tracing. Angles and distances are in (internal) radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,7 +30,7 @@ impl Default for TraceSettings {
             correction: 5e-4,
             max_step: 0.4,
             max_turn: 0.3,
-            max_steps: 40_000,
+            max_steps: 10_000,
             polish: 1,
         }
     }
@@ -47,31 +43,54 @@ impl TraceSettings {
             correction: 2e-3,
             max_step: 0.5,
             max_turn: 0.4,
-            max_steps: 20_000,
+            max_steps: 5_000,
             polish: 0,
         }
     }
 }
 
-/// First step of a curve; shorter loops than about three of these are not resolved.
-const FIRST_STEP: f64 = 0.02;
-/// Steps below which the configuration counts as singular.
-const LEAST_STEP: f64 = 1e-6;
-
-/// Why a march ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Ending {
-    Closed,
-    Stroke,
-    Singular,
-    TooLong,
+impl TraceSettings {
+    /// For a curve that did not close.
+    fn finer(self) -> TraceSettings {
+        TraceSettings {
+            correction: 0.1 * self.correction,
+            max_turn: 0.5 * self.max_turn,
+            ..self
+        }
+    }
 }
+
+/// How often a curve is traced again with finer steps if it does not close smoothly.
+const RETRIES: usize = 2;
 
 /// Traces the curve through `start`, which must solve the task, into `curve`.
 ///
 /// The curve runs along the cofactor field at `start`. If it does not close, it is followed both
-/// ways, and `start` lies inside it.
+/// ways, and `start` lies inside it. A curve that ends at a singular configuration or runs
+/// through one is traced again with finer steps, which tell a sharp bend from a node.
 pub(crate) fn trace<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    start: &[f64; N],
+    settings: &TraceSettings,
+    curve: &mut Curve<N>,
+) {
+    let mut settings = *settings;
+    for _ in 0..=RETRIES {
+        trace_once(kernel, goal, start, &settings, curve);
+        // A curve that is too long would only become longer.
+        if curve.is_smooth() || curve.status == CurveStatus::TooLong {
+            break;
+        }
+        settings = settings.finer();
+    }
+    for _ in 0..settings.polish {
+        polish(kernel, goal, settings.correction, curve);
+    }
+    curve.measure();
+}
+
+fn trace_once<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
     start: &[f64; N],
@@ -87,10 +106,6 @@ pub(crate) fn trace<const N: usize, const M: usize>(
         curve.status = status_of(ending, Some(back));
         join(curve, other);
     }
-    for _ in 0..settings.polish {
-        polish(kernel, goal, curve);
-    }
-    curve.measure();
 }
 
 fn status_of(forward: Ending, backward: Option<Ending>) -> CurveStatus {
@@ -127,264 +142,4 @@ fn join<const N: usize>(curve: &mut Curve<N>, mut before: Curve<N>) {
         .crossings
         .extend(curve.crossings.iter().map(|index| index + shift));
     *curve = before;
-}
-
-/// The state of a march.
-struct March<'a, const N: usize, const M: usize> {
-    kernel: &'a Kernel<N, M>,
-    goal: &'a Goal<f64>,
-    settings: &'a TraceSettings,
-    point: [f64; N],
-    /// Tangents at the last three vertices, newest first, and the two steps between them.
-    tangents: [[f64; N]; 3],
-    steps: [f64; 2],
-    /// +1 or −1: the march's direction relative to the cofactor field.
-    sense: f64,
-    step: f64,
-}
-
-fn march<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
-    start: &[f64; N],
-    sense: f64,
-    settings: &TraceSettings,
-    curve: &mut Curve<N>,
-) -> Ending {
-    let Some(first) = probe(kernel, start, goal) else {
-        curve.push(*start, [0.0; N]);
-        return Ending::Singular;
-    };
-    let tangent = first.tangent.map(|t| t * sense);
-    curve.push(*start, tangent);
-    let mut march = March {
-        kernel,
-        goal,
-        settings,
-        point: *start,
-        tangents: [tangent; 3],
-        steps: [FIRST_STEP; 2],
-        sense,
-        step: FIRST_STEP.min(settings.max_step),
-    };
-    let mut vertices = 1;
-    for _ in 0..settings.max_steps {
-        if !march.advance() {
-            if march.step >= LEAST_STEP {
-                continue;
-            }
-            if !march.cross_singularity() {
-                return Ending::Singular;
-            }
-            curve.crossings.push(vertices);
-        }
-        vertices += 1;
-        curve.push(march.point, march.tangents[0]);
-        if vertices > 3
-            && let Some(end) = closure(curve)
-        {
-            let last = curve.points.len() - 1;
-            curve.points[last] = end;
-            curve.tangents[last] = curve.tangents[0];
-            return Ending::Closed;
-        }
-        if march.left_stroke() {
-            return Ending::Stroke;
-        }
-    }
-    Ending::TooLong
-}
-
-/// If the start lies on the newest segment (modulo full turns): the start, unwrapped.
-fn closure<const N: usize>(curve: &Curve<N>) -> Option<[f64; N]> {
-    let (start, last) = (&curve.points[0], curve.points.len() - 1);
-    let (from, to) = (&curve.points[last - 1], &curve.points[last]);
-    let mut gap = 0.0;
-    let mut chord = 0.0;
-    for k in 0..N {
-        let d = short_way(start[k] - to[k]);
-        gap += d * d;
-        let c = to[k] - from[k];
-        chord += c * c;
-    }
-    if gap > 1.7 * chord || dot(&curve.tangents[0], &curve.tangents[last]) < 0.5 {
-        return None;
-    }
-    let lifted: [f64; N] = std::array::from_fn(|k| to[k] + short_way(start[k] - to[k]));
-    let segment = Segment::new(from, to, &curve.tangents[last - 1], &curve.tangents[last]);
-    let (_, miss) = segment.project(&lifted)?;
-    (miss < 2e-3 + 0.005 * chord.sqrt())
-        .then(|| std::array::from_fn(|k| start[k] + ((lifted[k] - start[k]) / TAU).round() * TAU))
-}
-
-impl<const N: usize, const M: usize> March<'_, N, M> {
-    /// Tries one step; on failure the step is halved.
-    fn advance(&mut self) -> bool {
-        let h = self.step;
-        let guess = self.predict(h);
-        let accepted =
-            probe(self.kernel, &guess, self.goal).and_then(|newton| self.judge(h, &guess, &newton));
-        let Some((point, tangent, correction)) = accepted else {
-            self.step = 0.5 * h;
-            return false;
-        };
-        self.point = point;
-        self.tangents = [tangent, self.tangents[0], self.tangents[1]];
-        self.steps = [h, self.steps[0]];
-        self.step = (h * growth(correction, self.settings.correction))
-            .min(self.settings.max_step)
-            .min(self.turn_limit(h));
-        true
-    }
-
-    /// The step at which the tangent would turn by three quarters of what is allowed.
-    fn turn_limit(&self, h: f64) -> f64 {
-        let turn = 1.0 - dot(&self.tangents[0], &self.tangents[1]);
-        let angle = (2.0 * turn.max(0.0)).sqrt();
-        0.75 * self.settings.max_turn * h / angle.max(1e-9)
-    }
-
-    /// Third-order predictor: ∫ of the quadratic through the last three tangents.
-    fn predict(&self, h: f64) -> [f64; N] {
-        let [t0, t1, t2] = &self.tangents;
-        let [h1, h2] = self.steps;
-        let (half, cube) = (0.5 * h * h, h * h * (h / 3.0 + 0.5 * h1));
-        let (per_1, per_2, per_12) = (1.0 / h1, 1.0 / h2, 1.0 / (h1 + h2));
-        std::array::from_fn(|k| {
-            let first = (t0[k] - t1[k]) * per_1;
-            let second = (first - (t1[k] - t2[k]) * per_2) * per_12;
-            self.point[k] + h * t0[k] + half * first + cube * second
-        })
-    }
-
-    /// The corrected vertex, its tangent and the size of the correction, if the step is sound.
-    fn judge(
-        &self,
-        h: f64,
-        guess: &[f64; N],
-        newton: &NewtonStep<N>,
-    ) -> Option<([f64; N], [f64; N], f64)> {
-        let settings = self.settings;
-        let correction = dot(&newton.correction, &newton.correction).sqrt();
-        // The negated comparison also refuses NaN.
-        if !(correction <= settings.correction && correction <= 0.1 * h) {
-            return None;
-        }
-        let tangent = newton.tangent.map(|t| t * self.sense);
-        if dot(&tangent, &self.tangents[0]) < settings.max_turn.cos() {
-            return None;
-        }
-        let point: [f64; N] = std::array::from_fn(|k| guess[k] + newton.correction[k]);
-        // The chord must be what both tangents say.
-        let (mut length, mut error) = (0.0, 0.0);
-        for k in 0..N {
-            let chord = point[k] - self.point[k];
-            length += chord * chord;
-            let mean = 0.5 * h * (tangent[k] + self.tangents[0][k]);
-            error += (chord - mean) * (chord - mean);
-        }
-        let sound = error <= (0.055 * h).powi(2) && length <= (1.5 * h).powi(2);
-        sound.then_some((point, tangent, correction))
-    }
-
-    /// Steps straight across a singular configuration where two strands meet.
-    ///
-    /// There the cofactor field vanishes and points the other way behind; the march keeps the
-    /// direction closest to the incoming one.
-    fn cross_singularity(&mut self) -> bool {
-        for h in [1e-4, 1e-3, 1e-2, 3e-2] {
-            let guess: [f64; N] = std::array::from_fn(|k| self.point[k] + h * self.tangents[0][k]);
-            let Some((point, newton)) = correct(self.kernel, self.goal, &guess) else {
-                continue;
-            };
-            let tangent = newton.tangent.map(|t| -t * self.sense);
-            let moved: [f64; N] = std::array::from_fn(|k| point[k] - guess[k]);
-            let straight = dot(&tangent, &self.tangents[0]) > 0.95;
-            if straight && dot(&moved, &moved).sqrt() < 0.2 * h {
-                self.point = point;
-                self.sense = -self.sense;
-                self.tangents = [tangent; 3];
-                self.steps = [h; 2];
-                self.step = h;
-                return true;
-            }
-        }
-        false
-    }
-
-    /// Whether a prismatic joint has left its stroke.
-    fn left_stroke(&self) -> bool {
-        (0..N).any(|k| !self.kernel.is_revolute(k) && self.point[k].abs() > FRAC_PI_2)
-    }
-}
-
-/// The factor by which the step may change, from the size of the last correction, which grows
-/// with the fourth power of the step.
-fn growth(correction: f64, allowed: f64) -> f64 {
-    let ratio = 0.5 * allowed / correction.max(1e-12);
-    ratio.sqrt().sqrt().clamp(0.5, 1.7)
-}
-
-/// Newton steps from `guess` onto the manifold.
-fn correct<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
-    guess: &[f64; N],
-) -> Option<([f64; N], NewtonStep<N>)> {
-    let mut point = *guess;
-    for _ in 0..12 {
-        let newton = probe(kernel, &point, goal)?;
-        let size = dot(&newton.correction, &newton.correction).sqrt();
-        // NaN and runaway corrections alike.
-        if !(size < 0.1) {
-            return None;
-        }
-        for k in 0..N {
-            point[k] += newton.correction[k];
-        }
-        if size < 1e-11 {
-            return Some((point, newton));
-        }
-    }
-    None
-}
-
-/// One Newton step at every vertex.
-fn polish<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
-    curve: &mut Curve<N>,
-) {
-    for index in 0..curve.points.len() {
-        let point = curve.points[index];
-        let Some(newton) = probe(kernel, &point, goal) else {
-            continue;
-        };
-        let size = dot(&newton.correction, &newton.correction);
-        if !(size < 1e-4) {
-            continue;
-        }
-        let old = curve.tangents[index];
-        let sense = dot(&newton.tangent, &old).signum();
-        curve.points[index] = std::array::from_fn(|k| point[k] + newton.correction[k]);
-        curve.tangents[index] = newton.tangent.map(|t| t * sense);
-    }
-    if curve.status == CurveStatus::Closed {
-        // Both ends are the same configuration; keep them equal to the last bit but the turns.
-        let last = curve.points.len() - 1;
-        let (first, end) = (curve.points[0], curve.points[last]);
-        curve.points[last] =
-            std::array::from_fn(|k| first[k] + ((end[k] - first[k]) / TAU).round() * TAU);
-        curve.tangents[last] = curve.tangents[0];
-    }
-}
-
-/// Linearisation and Newton step in one.
-#[inline]
-fn probe<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    point: &[f64; N],
-    goal: &Goal<f64>,
-) -> Option<NewtonStep<N>> {
-    newton_step(&kernel.linearise(point, goal))
 }
