@@ -74,7 +74,7 @@ fn land<const N: usize, const M: usize>(
     rng: &mut ChaCha8Rng,
 ) -> Option<Vec<f64>> {
     let lanes: Goal<Lanes> = goal.splat();
-    let mut seeder = Seeder::new(rng);
+    let mut seeder = Seeder::new(kernel, rng);
     let mut landed = None;
     while landed.is_none() && seeder.tried < starts {
         seeder.next(kernel, &lanes, rng, |seed| {

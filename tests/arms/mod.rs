@@ -56,6 +56,7 @@ pub fn rows(convention: Convention, rows: &[[f64; 3]]) -> Robot {
             joints: rows.iter().map(joint).collect(),
         },
         physical_limits: None,
+        tool: nalgebra::Isometry3::identity(),
     }
 }
 
@@ -68,6 +69,7 @@ pub fn planar(lengths: &[f64]) -> Robot {
             lengths: lengths.to_vec(),
         },
         physical_limits: None,
+        tool: nalgebra::Isometry3::identity(),
     }
 }
 
