@@ -8,7 +8,7 @@ mod arms;
 
 use criterion::{Criterion, criterion_group, criterion_main};
 use faultspace::design::{Robot, TaskSpace};
-use faultspace::kinematics::{Chain, Goal, Kernel, newton_step, reach};
+use faultspace::kinematics::{Chain, Goal, Kernel, newton_step, reach_bound};
 use faultspace::manifold::{PreImageSearch, SearchSettings};
 use faultspace::sampling::stream;
 use nalgebra::{Isometry3, Quaternion, Translation3, UnitQuaternion, Vector3};
@@ -54,7 +54,7 @@ fn pre_images(c: &mut Criterion) {
             ("default", SearchSettings::default()),
         ] {
             let mut search = PreImageSearch::new(&robot, task, settings).expect("redundancy 1");
-            let poses = reachable(&mut search, reach(&robot), 256);
+            let poses = reachable(&mut search, reach_bound(&robot), 256);
             let mut rng = stream(3, 0);
             let mut next = 0;
             c.bench_function(&format!("pre-image {name}, {label}, 256 poses"), |b| {
