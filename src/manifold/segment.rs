@@ -138,7 +138,7 @@ mod tests {
         };
         // A step of 0.4 is the longest; the place is off by its cube, the value by its fourth power.
         assert!((u - 0.25).abs() < 2e-3, "{u}");
-        assert!((segment.coordinate(0, u) - 1.0).abs() < 1e-5);
+        assert!((segment.coordinate(0, u) - 1.0).abs() < 0.4f64.powi(4) / 384.0);
         assert_eq!(segment.extrema(1), [None, None]);
     }
 }
