@@ -108,6 +108,7 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
     }
 
     /// Fills residual and Jacobian from the frames.
+    #[expect(clippy::needless_range_loop, reason = "one index for several arrays")]
     #[inline(always)]
     fn fill<T: Real>(
         &self,

@@ -23,6 +23,7 @@ pub struct NewtonStep<const N: usize> {
 /// The sign of the tangent is intrinsic, i.e. a property of the configuration alone: two strands
 /// of a manifold that run past each other are oriented oppositely, so that a jump from one to the
 /// other shows. `None` where the Jacobian has lost rank to working precision.
+#[expect(clippy::needless_range_loop, reason = "indices as in the textbook")]
 #[inline(always)]
 pub fn newton_step<const N: usize, const M: usize>(
     linear: &Linearisation<f64, N, M>,
@@ -31,7 +32,7 @@ pub fn newton_step<const N: usize, const M: usize>(
     let mut a = linear.jacobian;
     let mut b = linear.residual;
     let mut order: [usize; N] = std::array::from_fn(|i| i);
-    let mut determinant = if M % 2 == 0 { 1.0 } else { -1.0 };
+    let mut determinant = if M.is_multiple_of(2) { 1.0 } else { -1.0 };
     for k in 0..M {
         let mut pivot = k;
         for j in k + 1..N {
@@ -90,6 +91,7 @@ pub fn newton_step<const N: usize, const M: usize>(
 
 /// Damped least-norm correction −Jᵀ (JJᵀ + λ)⁻¹ residual (Levenberg–Marquardt), by an unpivoted
 /// Cholesky factorisation, which λ > 0 makes safe.
+#[expect(clippy::needless_range_loop, reason = "indices as in the textbook")]
 #[inline(always)]
 pub fn damped_step<T: Real, const N: usize, const M: usize>(
     linear: &Linearisation<T, N, M>,

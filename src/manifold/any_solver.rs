@@ -62,11 +62,6 @@ impl AnySolver {
         each!(self, solver => solver.is_sound())
     }
 
-    /// Number of curves of the last task point.
-    pub fn count(&self) -> usize {
-        each!(self, solver => solver.curves().len())
-    }
-
     pub fn visit(&self, visitor: &mut impl CurveVisitor) {
         each!(self, solver => solver.curves().iter().for_each(|curve| visitor.visit(curve)));
     }

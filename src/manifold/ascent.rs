@@ -152,8 +152,7 @@ fn settle<const N: usize, const M: usize>(
     for _ in 0..6 {
         let step = damped_step(&kernel.linearise(&point, goal), DAMPING);
         let size = dot(&step, &step);
-        // The negated comparison also refuses NaN.
-        if !(size < 0.25) {
+        if size.is_nan() || size > 0.25 {
             return None;
         }
         for k in 0..N {

@@ -1,7 +1,7 @@
 //! One traced curve of a pre-image, as the fixed-size kernels see it.
 
 use super::segment::Segment;
-use crate::angle::{Arc, wrap};
+use crate::angle::wrap;
 use crate::kinematics::dot;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
@@ -114,40 +114,6 @@ impl<const N: usize> Curve<N> {
         self.crossings.reverse();
         for index in &mut self.crossings {
             *index = last - *index;
-        }
-    }
-
-    /// Least and greatest value of coordinate `joint` along the curve, unwrapped.
-    pub fn span(&self, joint: usize) -> [f64; 2] {
-        let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-        for point in &self.points {
-            low = low.min(point[joint]);
-            high = high.max(point[joint]);
-        }
-        for index in 0..self.segments() {
-            if self.tangents[index][joint] * self.tangents[index + 1][joint] <= 0.0 {
-                let segment = self.segment(index);
-                for u in segment.extrema(joint).into_iter().flatten() {
-                    let value = segment.coordinate(joint, u);
-                    low = low.min(value);
-                    high = high.max(value);
-                }
-            }
-        }
-        [low, high]
-    }
-
-    /// The angles that `joint` takes: full by winding or by span, else one arc, since the
-    /// curve is connected.
-    pub fn range(&self, joint: usize) -> Arc {
-        if self.winding[joint] != 0 {
-            return Arc::FULL;
-        }
-        let [low, high] = self.span(joint);
-        if high - low >= TAU {
-            Arc::FULL
-        } else {
-            Arc::from_interval(low, high)
         }
     }
 

@@ -397,7 +397,7 @@ impl Atlas {
     pub(super) fn views(&self) -> impl IndexedParallelIterator<Item = BlockView<'_>> {
         self.shards.par_iter().map(|shard| {
             // Every shard was checked when it was built or loaded.
-            BlockView::new(shard.block()).unwrap_or_else(|| BlockView::empty())
+            BlockView::new(shard.block()).unwrap_or_else(BlockView::empty)
         })
     }
 }

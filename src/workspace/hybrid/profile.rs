@@ -300,7 +300,7 @@ fn collect(
     for piece in view.pieces(pose) {
         rest.walk(piece, view.joints, |_, part, from, to| {
             let step = f64::from(to[0].wrapping_sub(from[0]) as i16);
-            let theta = |u: f64| f64::from(f64::from(from[0]) + u * step) * STEP;
+            let theta = |u: f64| (f64::from(from[0]) + u * step) * STEP;
             let (a, b) = (from[family.joint], to[family.joint]);
             family.entries(a, b, part, |[u, v], [start, end]| {
                 // In the order of growing width.
