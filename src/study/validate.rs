@@ -3,12 +3,15 @@
 use super::file::{Failures, Kind, StudyFile};
 use super::search::{Method, OptimiserTable};
 use super::settings::{
-    Design, Estimate, Estimator, FigureFormat, Optimise, OptimiserSettings, Question,
-    ReportSettings, Study,
+    Design, Estimate, Estimator, EstimatorMethod, FigureFormat, Manifolds, Optimise,
+    OptimiserSettings, Question, ReportSettings, Study,
 };
-use super::{limits, serve};
+use super::{hybrid_table, limits, pose_table, serve};
 use crate::diagnostic::{Item, Place, Problem, Problems};
 use crate::workspace::FailureSet;
+
+/// Random starts of a search whose score costs milliseconds, if the study names no number.
+const COSTLY_RESTARTS: u64 = 8;
 
 /// The validated study; reports to `problems` whatever is wrong.
 pub(super) fn study(
@@ -17,19 +20,24 @@ pub(super) fn study(
     problems: &Problems,
     design: Design,
 ) -> Option<Study> {
-    let joints = design.robot.joints();
-    serve::check(file, problems, &design.robot);
-    let question = match file.kind.value {
-        Kind::Estimate => estimate(file, problems, joints).map(Question::Estimate),
-        Kind::Optimise => optimise(file, problems, &design).map(Question::Optimise),
+    let (question, estimator) = match file.kind.value {
+        Kind::Estimate => {
+            let estimator = estimator(file, problems, &design);
+            let question = estimate(file, problems, &design).map(Question::Estimate);
+            (question, estimator)
+        }
+        Kind::Optimise => {
+            let estimator = estimator(file, problems, &design);
+            let costly = matches!(estimator, Estimator::Hybrid { .. });
+            let question = optimise(file, problems, &design, costly).map(Question::Optimise);
+            (question, estimator)
+        }
+        Kind::Manifolds => {
+            let question = manifolds(file, problems, &design).map(Question::Manifolds);
+            (question, Estimator::default())
+        }
     };
-    let failures = failures(file, problems, joints);
-    let default = Estimator::default();
-    let method = file.estimator.method.as_ref();
-    let estimator = Estimator {
-        method: method.map_or(default.method, |item| item.value),
-        tolerance: file.estimator.tolerance.unwrap_or(default.tolerance),
-    };
+    let failures = failures(file, problems, design.robot.joints());
     Some(Study {
         name: name.to_owned(),
         title: file.title.clone(),
@@ -43,41 +51,100 @@ pub(super) fn study(
     })
 }
 
-fn estimate(file: &StudyFile, problems: &Problems, joints: usize) -> Option<Estimate> {
-    if let Some(search) = &file.search {
-        refuse_table(problems, &search.place, "estimate", "optimise");
+fn estimator(file: &StudyFile, problems: &Problems, design: &Design) -> Estimator {
+    match serve::choose(file, problems, &design.robot) {
+        EstimatorMethod::Exact => match file.estimator.tolerance {
+            Some(tolerance) => Estimator::Exact { tolerance },
+            None => Estimator::default(),
+        },
+        EstimatorMethod::Hybrid => {
+            let table = file.estimator.hybrid.as_ref();
+            Estimator::Hybrid {
+                hybrid: hybrid_table::settings(table, file.space.value, problems),
+            }
+        }
     }
-    if let Some(optimiser) = &file.optimiser {
-        refuse_table(problems, &optimiser.place, "estimate", "optimise");
-    }
+}
+
+fn estimate(file: &StudyFile, problems: &Problems, design: &Design) -> Option<Estimate> {
+    refuse_tables(file, problems, "estimate");
     let Some(table) = &file.limits else {
-        report_missing_limits(problems, joints);
+        report_missing_limits(problems, design.robot.joints());
         return None;
     };
-    let radii = file.estimate.as_ref().and_then(|e| e.value.radii.clone());
+    let radii = file.estimate.as_ref().and_then(|e| e.value.radii.as_ref());
     Some(Estimate {
-        limits: limits::check(table, problems, joints)?,
-        radii: radii.unwrap_or_default(),
+        limits: limits::check(table, problems, &design.robot)?,
+        radii: radii.map(|item| item.value.clone()).unwrap_or_default(),
     })
 }
 
-fn optimise(file: &StudyFile, problems: &Problems, design: &Design) -> Option<Optimise> {
-    if let Some(estimate) = &file.estimate {
-        refuse_table(problems, &estimate.place, "optimise", "estimate");
-    }
-    let joints = design.robot.joints();
+fn optimise(
+    file: &StudyFile,
+    problems: &Problems,
+    design: &Design,
+    costly: bool,
+) -> Option<Optimise> {
+    refuse_tables(file, problems, "optimise");
     let table = file.limits.as_ref();
-    let start = table.and_then(|table| limits::check(table, problems, joints));
+    let start = table.and_then(|table| limits::check(table, problems, &design.robot));
     let search = limits::search(file, problems, &design.robot);
     if let (Some(table), Some(start)) = (table, &start) {
         limits::check_start(table, start, problems, search.min_width_deg);
     }
-    let optimiser = file.optimiser.as_ref().map(|item| &item.value);
+    let table = file.optimiser.as_ref().map(|item| &item.value);
+    let mut optimiser = optimiser_settings(table, problems);
+    if let OptimiserSettings::CoordinateAscent(ascent) = &mut optimiser
+        && costly
+        && !table.is_some_and(|table| table.restarts_given)
+    {
+        ascent.restarts = COSTLY_RESTARTS;
+    }
     Some(Optimise {
         start,
         search,
-        optimiser: optimiser_settings(optimiser, problems),
+        optimiser,
     })
+}
+
+fn manifolds(file: &StudyFile, problems: &Problems, design: &Design) -> Option<Manifolds> {
+    refuse_tables(file, problems, "manifolds");
+    serve::check_manifolds(file, problems, &design.robot);
+    let Some(pose) = &file.pose else {
+        report_missing_pose(problems);
+        return None;
+    };
+    let limits = file.limits.as_ref();
+    let search = file.manifolds.as_ref().map(|item| &item.value);
+    Some(Manifolds {
+        pose: pose_table::pose(pose, file.space.value, problems)?,
+        limits: match limits {
+            Some(table) => Some(limits::check(table, problems, &design.robot)?),
+            None => None,
+        },
+        search: pose_table::search(search),
+    })
+}
+
+/// Reports every table that belongs to another kind of study.
+fn refuse_tables(file: &StudyFile, problems: &Problems, kind: &str) {
+    fn place<T>(item: &Option<Item<T>>) -> Option<&Place> {
+        item.as_ref().map(|item| &item.place)
+    }
+    let measured: &[&str] = &["estimate", "optimise"];
+    let tables: [(Option<&Place>, &[&str]); 6] = [
+        (file.estimator.place.as_ref(), measured),
+        (place(&file.estimate), &["estimate"]),
+        (place(&file.search), &["optimise"]),
+        (place(&file.optimiser), &["optimise"]),
+        (place(&file.pose), &["manifolds"]),
+        (place(&file.manifolds), &["manifolds"]),
+    ];
+    for (place, kinds) in tables {
+        if let Some(place) = place.filter(|_| !kinds.contains(&kind)) {
+            refuse_table(problems, place, kind, kinds[0]);
+        }
+    }
 }
 
 fn optimiser_settings(table: Option<&OptimiserTable>, problems: &Problems) -> OptimiserSettings {
@@ -173,6 +240,20 @@ fn report_missing_limits(problems: &Problems, joints: usize) {
         found: "no table `[limits]`".into(),
         expected: format!("`lower_deg` and `upper_deg` with {joints} entries each"),
         help: "add `[limits]` with `lower_deg = […]` and `upper_deg = […]`".into(),
+    };
+    problems.report_absent(&place, problem);
+}
+
+fn report_missing_pose(problems: &Problems) {
+    let place = Place {
+        key: "pose".into(),
+        span: 0..0,
+    };
+    let problem = Problem {
+        message: "a study of manifolds needs a pose".into(),
+        found: "no table `[pose]`".into(),
+        expected: "`position` and, for pose tasks, `rotation` or `phi_deg`".into(),
+        help: "add `[pose]` with `position = […]`".into(),
     };
     problems.report_absent(&place, problem);
 }

@@ -3,9 +3,11 @@
 pub mod hybrid;
 mod limits;
 mod map;
+mod one_pose;
 pub mod planar;
 mod size;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
+pub use one_pose::PoseTolerance;
 pub use size::{Estimate, WorkspaceSizes};
