@@ -5,13 +5,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every module with all it may import from, in order: a module may only name earlier ones.
-const MODULES: [(&str, &[&str]); 11] = [
+const MODULES: [(&str, &[&str]); 12] = [
     ("angle", &[]),
     ("sampling", &[]),
     ("diagnostic", &[]),
     ("design", &["angle", "sampling", "diagnostic"]),
     ("kinematics", &["design"]),
-    ("workspace", &["angle", "sampling", "kinematics"]),
+    ("manifold", &["angle", "sampling", "design", "kinematics"]),
+    (
+        "workspace",
+        &["angle", "sampling", "design", "kinematics", "manifold"],
+    ),
     (
         "objective",
         &[
@@ -33,6 +37,7 @@ const MODULES: [(&str, &[&str]); 11] = [
             "diagnostic",
             "design",
             "kinematics",
+            "manifold",
             "workspace",
             "objective",
             "optimiser",

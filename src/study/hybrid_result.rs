@@ -3,8 +3,8 @@
 use super::optimise::Optimum;
 use super::result::{SCHEMA, limits_deg, provenance, search, status, workspaces};
 use super::settings::{DegreeLimits, Question, Study};
+use crate::workspace::WorkspaceSizes;
 use crate::workspace::hybrid::{Atlas, SamplePlan, Sampling};
-use crate::workspace::{Estimate, WorkspaceSizes};
 use serde_json::{Value, json};
 
 /// Everything that a finished hybrid study knows.
@@ -15,8 +15,8 @@ pub(super) struct HybridFinding<'a> {
     /// The atlas on which `sizes` were measured.
     pub atlas: &'a Atlas,
     pub optimum: Option<&'a Optimum>,
-    /// S_F of the optimum on the samples of its search.
-    pub searched: Option<Estimate>,
+    /// Standard error of the optimum's S_F on the samples of its search.
+    pub searched_error: Option<f64>,
     pub seconds: Value,
     pub threads: usize,
     pub notes: &'a [String],
@@ -47,10 +47,8 @@ impl HybridFinding<'_> {
         result["seeds"] = json!(counts.seeds);
         if let (Some(optimum), Question::Optimise(optimise)) = (self.optimum, &study.question) {
             result["search"] = search(optimum, optimise);
-            if let Some(searched) = self.searched {
-                result["search"]["score_on_search_sample"] = json!(searched.value);
-                result["search"]["standard_error_on_search_sample"] = json!(searched.error);
-            }
+            result["search"]["score_on_search_sample"] = json!(optimum.score());
+            result["search"]["standard_error_on_search_sample"] = json!(self.searched_error);
         }
         result["notes"] = json!(self.notes);
         result["seconds"] = self.seconds.clone();

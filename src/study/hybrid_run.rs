@@ -151,7 +151,7 @@ impl Run<'_> {
             sizes: &sizes,
             atlas,
             optimum,
-            searched: searched.map(|searched| searched.size),
+            searched_error: searched.map(|searched| searched.size.error),
             seconds: json!({
                 "total": session.store.seconds(),
                 "atlas": self.tracing,
