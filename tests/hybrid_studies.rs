@@ -331,7 +331,7 @@ fn manifolds_of_a_spatial_pose() {
         let (curve, length) = (cells.next()?.parse::<usize>().ok()?, cells.nth(1)?);
         Some((curve, length.parse::<f64>().ok()?))
     });
-    let mut lengths = vec![0.0; 3];
+    let mut lengths = [0.0; 3];
     ends.for_each(|(curve, length)| lengths[curve] = length);
     for (length, manifold) in lengths[1..].iter().zip(manifolds) {
         assert!((length - number(&manifold["length"])).abs() < 1e-9);

@@ -63,6 +63,10 @@ pub(super) fn run(arguments: &RunArguments) -> Ending {
         drop(display);
         return match built {
             Ok(report) => output::print(&describe(part, &report)),
+            Err(RunError::Interrupted) => {
+                output::message("interrupted; the same command goes on from the finished shards");
+                Ending::Failed
+            }
             Err(error) => failure(&error, &arguments.study),
         };
     }

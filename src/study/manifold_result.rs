@@ -3,12 +3,12 @@
 
 use super::result::{SCHEMA, limits_deg, provenance};
 use super::settings::{Manifolds, Study};
-use crate::angle::{AngleSet, degree_pairs};
+use crate::angle::{AngleSet, Arc, degree_pairs};
 use crate::design::{JointKind, Robot, TaskSpace};
 use crate::kinematics::{JointScale, joint_scales};
 use crate::manifold::{Completeness, CriticalPoint, PreImage, SelfMotionManifold};
 use crate::report::Table;
-use crate::workspace::PoseTolerance;
+use crate::workspace::{PoseTolerance, ranges_within};
 use serde_json::{Value, json};
 
 /// Everything that a finished study of one pose knows.
@@ -16,6 +16,8 @@ pub(super) struct ManifoldFinding<'a> {
     pub study: &'a Study,
     pub manifolds: &'a Manifolds,
     pub pre_image: &'a PreImage,
+    /// Physical limits as arcs of internal joint variables.
+    pub physical: &'a [Arc],
     pub tolerance: Option<&'a PoseTolerance>,
     /// Metres, and radians of orientation.
     pub residual: [f64; 2],
@@ -27,7 +29,9 @@ impl ManifoldFinding<'_> {
     pub fn to_json(&self) -> Value {
         let (study, found) = (self.study, self.pre_image);
         let joints = Joints::of(&study.design.robot);
-        let manifolds: Vec<Value> = found.manifolds.iter().map(|m| joints.manifold(m)).collect();
+        let each = found.manifolds.iter();
+        let each = each.map(|m| joints.manifold(m, &self.ranges(std::slice::from_ref(m))));
+        let manifolds: Vec<Value> = each.collect();
         let mut result = json!({
             "schema": SCHEMA,
             "study": study.name,
@@ -36,7 +40,7 @@ impl ManifoldFinding<'_> {
             "pose": self.manifolds.pose,
             "manifolds": manifolds,
         });
-        joints.put_ranges(&mut result, &found.joint_ranges());
+        joints.put_ranges(&mut result, &self.ranges(&found.manifolds));
         result["winding_sum"] = json!(found.winding_sum());
         result["completeness"] = match found.completeness {
             Completeness::Proved => json!({ "kind": "proved" }),
@@ -53,6 +57,15 @@ impl ManifoldFinding<'_> {
         result["seconds"] = self.seconds.clone();
         result["provenance"] = provenance(study, self.threads);
         result
+    }
+
+    /// Angles of every joint over `manifolds`, inside the physical limits if the robot has any.
+    fn ranges(&self, manifolds: &[SelfMotionManifold]) -> Vec<AngleSet> {
+        if self.physical.iter().any(|arc| !arc.is_full()) {
+            return ranges_within(manifolds, self.physical);
+        }
+        let joint = |joint| AngleSet::from_arcs(manifolds.iter().map(|m| m.joint_range(joint)));
+        (0..self.physical.len()).map(joint).collect()
     }
 
     fn residual(&self) -> Value {
@@ -99,8 +112,8 @@ impl ManifoldFinding<'_> {
         }
         if self.study.design.robot.physical_limits.is_some() {
             notes.push(
-                "Manifolds and their ranges are those without physical limits of revolute joints; \
-                 the tolerance of failures respects them."
+                "Joint ranges are those inside the physical limits; lengths, windings, critical points \
+                 and vertices are of the whole curves."
                     .into(),
             );
         }
@@ -123,16 +136,13 @@ impl Joints {
         }
     }
 
-    fn manifold(&self, manifold: &SelfMotionManifold) -> Value {
+    fn manifold(&self, manifold: &SelfMotionManifold, ranges: &[AngleSet]) -> Value {
         let mut value = json!({
             "status": manifold.status,
             "length": manifold.length,
             "winding": manifold.winding,
         });
-        let ranges: Vec<AngleSet> = (0..manifold.joints)
-            .map(|joint| manifold.joint_range(joint).into())
-            .collect();
-        self.put_ranges(&mut value, &ranges);
+        self.put_ranges(&mut value, ranges);
         let points = (0..manifold.joints).flat_map(|joint| manifold.critical_points(joint));
         value["critical_points"] = points.map(|point| self.critical_point(&point)).collect();
         value["crossings"] = json!(manifold.crossings.len());

@@ -36,14 +36,16 @@ pub(super) fn run(
         .map_err(anyhow::Error::from)?;
     let pose = tool(&manifolds.pose);
     let pre_image = search.find(&pose, &mut sampling::stream(study.seed, 0));
+    let physical = physical(robot);
     let tolerance = manifolds.limits.as_ref().map(|limits| {
         let limits = limits.to_limits(robot);
-        PoseTolerance::of(&pre_image, &physical(robot), &limits, &study.failures)
+        PoseTolerance::of(&pre_image, &physical, &limits, &study.failures)
     });
     let finding = ManifoldFinding {
         study,
         manifolds,
         pre_image: &pre_image,
+        physical: &physical,
         tolerance: tolerance.as_ref(),
         residual: residual(&search, &pre_image, &pose, study),
         seconds: json!({

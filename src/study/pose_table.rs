@@ -82,21 +82,7 @@ pub(super) fn search(table: Option<&ManifoldsTable>) -> ManifoldSearch {
 /// The pose, if it has what `task` asks for and nothing else.
 pub(super) fn pose(item: &Item<PoseTable>, task: TaskSpace, problems: &Problems) -> Option<Pose> {
     let table = &item.value;
-    let wanted = if task.is_planar() { 2 } else { 3 };
-    let position = &table.position;
-    if position.value.len() != wanted {
-        let problem = Problem {
-            message: format!("the task \"{task}\" needs a position of {wanted} numbers"),
-            found: format!("{} entries", position.value.len()),
-            expected: format!("{wanted} entries, metres"),
-            help: if task.is_planar() {
-                "write `position = [x, y]`".into()
-            } else {
-                "write `position = [x, y, z]`".into()
-            },
-        };
-        problems.report(&position.place, problem);
-    }
+    check_position(&table.position, task, problems);
     let rotation = table.rotation.as_ref();
     let phi = table.phi_deg.as_ref();
     let turned = task == TaskSpace::SpatialPose;
@@ -122,10 +108,28 @@ pub(super) fn pose(item: &Item<PoseTable>, task: TaskSpace, problems: &Problems)
         None => None,
     };
     Some(Pose {
-        position: position.value.iter().map(|item| item.value).collect(),
+        position: table.position.value.iter().map(|item| item.value).collect(),
         rotation,
         phi_deg: phi.filter(|_| directed).map(|item| item.value),
     })
+}
+
+/// Reports a position of the wrong dimension.
+fn check_position(position: &Item<Vec<Item<f64>>>, task: TaskSpace, problems: &Problems) {
+    let wanted = if task.is_planar() { 2 } else { 3 };
+    if position.value.len() != wanted {
+        let problem = Problem {
+            message: format!("the task \"{task}\" needs a position of {wanted} numbers"),
+            found: format!("{} entries", position.value.len()),
+            expected: format!("{wanted} entries, metres"),
+            help: if task.is_planar() {
+                "write `position = [x, y]`".into()
+            } else {
+                "write `position = [x, y, z]`".into()
+            },
+        };
+        problems.report(&position.place, problem);
+    }
 }
 
 /// Reports a key that is missing or that the task has no use for.
@@ -195,7 +199,7 @@ fn rotation_matrix(item: &Item<Vec<Vec<f64>>>, problems: &Problems) -> Option<[[
     };
     let matrix = Matrix3::from_fn(|r, c| rows[r][c]);
     let error = (matrix * matrix.transpose() - Matrix3::identity()).amax();
-    if !(error <= ORTHONORMAL) {
+    if error > ORTHONORMAL {
         let found = format!("rows whose products are off by {error:.1e}");
         return report(found, "give all digits of the matrix");
     }

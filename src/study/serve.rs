@@ -10,6 +10,9 @@ use std::f64::consts::TAU;
 /// Names the estimator for everything "exact" cannot serve.
 const HYBRID: &str = "use `method = \"hybrid\"`, which serves this";
 
+/// What is wrong wherever pre-images are needed and cannot be had.
+const CANNOT_TRACE: &str = "this version cannot trace the self-motion of this robot and task";
+
 /// Most joints of a planar pose task that is measured exactly.
 const MAX_POSE_JOINTS: usize = 5;
 
@@ -98,7 +101,7 @@ fn hybrid_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>>
     let design = &file.design.place;
     let name = &robot.name;
     let degree = robot.degree_of_redundancy(task);
-    let message = "this version cannot trace the self-motion of this robot and task";
+    let message = CANNOT_TRACE;
     if degree > MAX_REDUNDANCY {
         let found = format!(
             "{} joints: a degree of redundancy of {degree}",
@@ -138,12 +141,13 @@ fn hybrid_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>>
             help.into(),
         ));
     }
-    hybrid_joint_refusal(file, robot)
+    prismatic_refusal(file, robot).or_else(|| physical_refusal(file, robot))
 }
 
-fn hybrid_joint_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+/// Joint 1 turns, and a stroke sets the scale of every other prismatic joint.
+fn prismatic_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
     let design = &file.design.place;
-    let message = "this version cannot trace the self-motion of this robot and task";
+    let message = CANNOT_TRACE;
     if robot.joint_kind(0) == JointKind::Prismatic {
         let found = format!("the robot `{}`, whose joint 1 is prismatic", robot.name);
         let expected = "a revolute joint 1, about which the workspace is turned";
@@ -173,7 +177,14 @@ fn hybrid_joint_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusa
             help.into(),
         ));
     }
-    // Both before and after a failure they would cut B, which the estimate does not do yet.
+    None
+}
+
+/// Physical limits of joint 1 would cut B before and after a failure, which the estimate does not
+/// do yet.
+fn physical_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    let design = &file.design.place;
+    let message = CANNOT_TRACE;
     let limits = robot.physical_limits.as_ref();
     if limits.is_some_and(|limits| limits.upper[0] - limits.lower[0] < TAU - 1e-9) {
         let found = format!("the robot `{}` with physical limits of joint 1", robot.name);

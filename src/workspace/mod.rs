@@ -9,5 +9,5 @@ mod size;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
-pub use one_pose::PoseTolerance;
+pub use one_pose::{PoseTolerance, ranges_within};
 pub use size::{Estimate, WorkspaceSizes};

@@ -40,10 +40,9 @@ impl PoseTolerance {
         failures: &FailureSet,
     ) -> PoseTolerance {
         let arcs: Vec<Arc> = limits.joints().iter().map(|limit| limit.arc()).collect();
-        let bounds: Vec<[Arc; 1]> = physical.iter().map(|arc| [*arc]).collect();
-        let ranges = images(pre_image, |theta| is_inside(theta, &bounds));
+        let ranges = ranges_within(&pre_image.manifolds, physical);
         let both: Vec<[Arc; 2]> = arcs.iter().zip(physical).map(|(a, p)| [*a, *p]).collect();
-        let inside = images(pre_image, |theta| is_inside(theta, &both));
+        let inside = images(&pre_image.manifolds, &both);
         let before_failure = inside[0].mirrored().sum(&arcs[0]);
         let after_lock_of_1 = ranges[0].erosion(&arcs[0]).mirrored();
         let mut survives: Vec<bool> = ranges
@@ -75,11 +74,19 @@ fn is_inside<const K: usize>(theta: &[f64], arcs: &[[Arc; K]]) -> bool {
         .all(|(angle, arc)| arc.contains(*angle))
 }
 
-/// The angles of every joint over the parts of the pre-image at which `is_inside` holds.
-fn images(pre_image: &PreImage, is_inside: impl Fn(&[f64]) -> bool) -> Vec<AngleSet> {
-    let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); pre_image.joints];
-    for manifold in &pre_image.manifolds {
-        for run in runs(manifold, &is_inside) {
+/// Θ: the angles of every joint over the parts of `manifolds` inside the physical limits of the
+/// joints from 2 on, given as arcs of internal joint variables, one per joint.
+pub fn ranges_within(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<AngleSet> {
+    let bounds: Vec<[Arc; 1]> = physical.iter().map(|arc| [*arc]).collect();
+    images(manifolds, &bounds)
+}
+
+/// The angles of every joint over the parts of `manifolds` at which the joints from 2 on lie in
+/// all their arcs.
+fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]]) -> Vec<AngleSet> {
+    let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); bounds.len()];
+    for manifold in manifolds {
+        for run in runs(manifold, &|theta: &[f64]| is_inside(theta, bounds)) {
             for (arcs, [low, high]) in arcs.iter_mut().zip(run) {
                 arcs.push(Arc::from_interval(low, high));
             }
