@@ -1,7 +1,7 @@
 //! Designs redundant robot arms whose workspace survives a locked joint.
 //!
 //! Data flows through the modules in this order, and a module imports only from those before it:
-//! [`design`] → [`kinematics`] → [`workspace`] → [`objective`] → [`optimiser`] → [`report`] →
+//! [`design`] → [`kinematics`] → [`manifold`] → [`workspace`] → [`objective`] → [`optimiser`] → [`report`] →
 //! [`study`] → [`cli`]. [`angle`], [`sampling`] and [`diagnostic`] serve all of them.
 
 pub mod angle;

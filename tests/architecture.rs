@@ -12,7 +12,10 @@ const MODULES: [(&str, &[&str]); 12] = [
     ("design", &["angle", "sampling", "diagnostic"]),
     ("kinematics", &["design"]),
     ("manifold", &["angle", "sampling", "design", "kinematics"]),
-    ("workspace", &["angle", "sampling", "kinematics"]),
+    (
+        "workspace",
+        &["angle", "sampling", "design", "kinematics", "manifold"],
+    ),
     (
         "objective",
         &[
@@ -34,6 +37,7 @@ const MODULES: [(&str, &[&str]); 12] = [
             "diagnostic",
             "design",
             "kinematics",
+            "manifold",
             "workspace",
             "objective",
             "optimiser",

@@ -96,6 +96,8 @@ fn unknown_choices_name_the_nearest() {
     );
     assert_bad_study("\"estimate\"", "\"optimize\"", 1, "kind", &["\"optimise\""]);
     assert_bad_study("\"estimate\"", "\"train\"", 1, "kind", &["\"optimise\""]);
+    let hints = ["did you mean \"hybrid\"?"];
+    assert_bad_study("\"exact\"", "\"hybird\"", 11, "estimator.method", &hints);
 }
 
 #[test]
@@ -191,8 +193,8 @@ fn a_missing_design_file() {
 
 #[test]
 fn an_estimator_that_cannot_serve() {
-    let hints = ["not available in this version", "\"exact\""];
-    assert_bad_study("\"exact\"", "\"hybrid\"", 11, "estimator.method", &hints);
+    let hints = ["unknown choice", "\"hybrid\""];
+    assert_bad_study("\"exact\"", "\"surrogate\"", 11, "estimator.method", &hints);
     let dir = folder();
     let row = "{ kind = \"revolute\", alpha_deg = 90, a = 0.5 }";
     let robot =
@@ -205,6 +207,161 @@ fn an_estimator_that_cannot_serve() {
         "twist of row 1",
     ];
     assert_refused(dir.path(), &parts);
+}
+
+/// Settings of the hybrid estimator, one line each below `[estimator.hybrid]`.
+#[test]
+fn settings_of_the_hybrid_estimator() {
+    let bad = |line: &str, key: &str, hints: &[&str]| {
+        let table = format!("\"hybrid\"\n[estimator.hybrid]\n{line}");
+        let key = format!("estimator.hybrid.{key}");
+        // The last line of `line` is the bad one.
+        let number = 12 + line.lines().count();
+        assert_bad_study("\"exact\"", &table, number, &key, hints);
+    };
+    bad("sample = 1", "sample", &["did you mean `samples`?"]);
+    bad("samples = 0", "samples", &["found 0", "from 32"]);
+    bad("samples = 1.5", "samples", &["found the float 1.5"]);
+    bad(
+        "samples = 320\nreplicates = 21",
+        "replicates",
+        &["from 2 to 20", "`samples`"],
+    );
+    bad("replicates = 1", "replicates", &["from 2"]);
+    bad(
+        "sampling = \"grit\"",
+        "sampling",
+        &["did you mean \"grid\"?"],
+    );
+    bad("cell = 0.1", "cell", &["only with `sampling = \"grid\"`"]);
+    bad(
+        "centres = true",
+        "centres",
+        &["only with `sampling = \"grid\"`"],
+    );
+    let grid = "sampling = \"grid\"\n";
+    bad(&format!("{grid}cell = 0.7"), "cell", &["from 0.002 to 0.5"]);
+    bad(&format!("{grid}cell = nan"), "cell", &["finite"]);
+    bad(
+        &format!("{grid}samples = 99"),
+        "samples",
+        &["only with `sampling = \"lattice\"`"],
+    );
+    bad(
+        &format!("{grid}orientations = 5"),
+        "orientations",
+        &["no orientations", "expected 1"],
+    );
+    bad(
+        &format!("{grid}centres = 1"),
+        "centres",
+        &["`true` or `false`"],
+    );
+    bad("tolerance_rad = 1", "tolerance_rad", &["0.2 rad"]);
+    bad("memory_limit_mb = 0", "memory_limit_mb", &["found 0"]);
+    bad("rule = \"max\"", "rule", &["\"definition\"", "\"paper\""]);
+    let hints = ["reports no rotation sets", "manifolds"];
+    let radii = "\"hybrid\"\n[estimate]\nradii = [1.0]";
+    assert_bad_study("\"exact\"", radii, 13, "estimate.radii", &hints);
+}
+
+/// A study of one pose in the plane; lines 1 to 9.
+const POSE: &str = "\
+kind = \"manifolds\"
+design = \"arm.toml\"
+[task]
+space = \"planar-position\"
+[pose]
+position = [1.0, 0.5]
+[manifolds]
+seeds = 64
+residual = 1e-6
+";
+
+#[test]
+fn poses() {
+    let bad = |good: &str, bad: &str, line: usize, key: &str, hints: &[&str]| {
+        let dir = folder();
+        assert!(POSE.contains(good));
+        fs::write(dir.path().join("study.toml"), POSE.replacen(good, bad, 1)).unwrap();
+        let (place, key) = (format!("study.toml:{line}:"), format!("`{key}`"));
+        assert_refused(dir.path(), &[&[place.as_str(), &key][..], hints].concat());
+    };
+    bad(
+        "[1.0, 0.5]",
+        "[1.0]",
+        6,
+        "pose.position",
+        &["2 numbers", "found 1 entries"],
+    );
+    bad(
+        "[1.0, 0.5]",
+        "[1.0, inf]",
+        6,
+        "pose.position",
+        &["found inf"],
+    );
+    bad(
+        "position =",
+        "positon =",
+        6,
+        "pose.positon",
+        &["did you mean `position`?"],
+    );
+    let orientation = "[1.0, 0.5]\nphi_deg = 30";
+    bad(
+        "[1.0, 0.5]",
+        orientation,
+        7,
+        "pose.phi_deg",
+        &["no meaning"],
+    );
+    let rotation = "[1.0, 0.5]\nrotation = [[1, 2], 3]";
+    bad(
+        "[1.0, 0.5]",
+        rotation,
+        7,
+        "pose.rotation",
+        &["row of three numbers"],
+    );
+    bad(
+        "planar-position",
+        "spatial-pose",
+        4,
+        "task.space",
+        &["more joints"],
+    );
+    bad("64", "0", 8, "manifolds.seeds", &["found 0"]);
+    bad("1e-6", "0", 9, "manifolds.residual", &["from 0.000000001"]);
+    bad(
+        "[manifolds]",
+        "[search]\n[manifolds]",
+        7,
+        "search",
+        &["kind = \"optimise\""],
+    );
+    bad(
+        "[manifolds]",
+        "[estimator]\n[manifolds]",
+        7,
+        "estimator",
+        &["kind = \"estimate\""],
+    );
+    let limits = "[limits]\nlower_deg = [0]\nupper_deg = [1]\n[manifolds]";
+    bad(
+        "[manifolds]",
+        limits,
+        8,
+        "limits.lower_deg",
+        &["expected 3 entries"],
+    );
+    bad(
+        "[pose]\nposition = [1.0, 0.5]\n",
+        "",
+        1,
+        "pose",
+        &["needs a pose"],
+    );
 }
 
 #[test]

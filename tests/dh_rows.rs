@@ -26,6 +26,7 @@ fn result(folder: &Path, robot: &str, lower: &str, upper: &str) -> Value {
         overwrite: false,
         threads: Some(1),
         interrupt: Arc::default(),
+        cache: None,
     };
     let study = Study::load(&folder.join("study.toml")).unwrap();
     run(&study, &options, Arc::new(Quiet)).unwrap()

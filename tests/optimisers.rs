@@ -42,6 +42,7 @@ fn solve_file(path: &Path, seed: u64, threads: usize) -> Value {
         overwrite: false,
         threads: Some(threads),
         interrupt: Arc::new(AtomicBool::new(false)),
+        cache: None,
     };
     let result = run(&study, &options, Arc::new(Silent)).expect("a result");
     // What is returned is what is written.

@@ -3,9 +3,11 @@
 //! Results go to stdout, progress and messages to stderr. Exit codes: 0 done, 1 the study failed
 //! or was interrupted, 2 bad input.
 
+mod cache;
 mod check;
 mod joint_table;
 mod list;
+mod merge;
 mod output;
 mod progress;
 mod run;
@@ -44,6 +46,8 @@ enum Command {
         #[arg(long, value_name = "FILE")]
         out: Option<PathBuf>,
     },
+    /// Bring together manifolds that were traced in parts with `run --shard`
+    Merge(merge::MergeArguments),
     /// List the designs and studies under the current folder
     List,
     /// Print a completion script for a shell
@@ -77,6 +81,7 @@ pub fn main() -> ExitCode {
         Command::Run(arguments) => run::run(&arguments),
         Command::Check { files } => check::check(&files),
         Command::Show { design, out } => show::show(&design, out.as_deref()),
+        Command::Merge(arguments) => merge::merge(&arguments),
         Command::List => list::list(),
         Command::Completions { shell } => completions(shell),
     };

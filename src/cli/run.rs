@@ -1,7 +1,7 @@
 //! `faultspace run`.
 
-use super::{Ending, output, progress, summary};
-use crate::study::{self, RunError, RunOptions, Study};
+use super::{Ending, cache, output, progress, summary};
+use crate::study::{self, Part, RunError, RunOptions, ShardReport, Study};
 use clap::Args;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -30,6 +30,11 @@ pub(super) struct RunArguments {
     /// Number of threads [default: one per core]
     #[arg(long, value_name = "N", allow_negative_numbers = true, value_parser = clap::value_parser!(u64).range(1..=MAX_THREADS))]
     threads: Option<u64>,
+    #[command(flatten)]
+    cache: cache::CacheArguments,
+    /// Only trace part I of N of the study's manifolds into the cache, e.g. on several machines
+    #[arg(long, value_name = "I/N", value_parser = parse_part, conflicts_with_all = ["no_cache", "json"])]
+    shard: Option<Part>,
     /// Print result.json on stdout instead of a summary
     #[arg(long)]
     json: bool,
@@ -50,8 +55,21 @@ pub(super) fn run(arguments: &RunArguments) -> Ending {
         overwrite: arguments.overwrite,
         threads: arguments.threads.and_then(|n| usize::try_from(n).ok()),
         interrupt: interrupt_flag(),
+        cache: arguments.cache.folder(),
     };
     let display = progress::display(arguments.quiet);
+    if let Some(part) = arguments.shard {
+        let built = study::build_part(&study, &options, part, display.as_ref());
+        drop(display);
+        return match built {
+            Ok(report) => output::print(&describe(part, &report)),
+            Err(RunError::Interrupted) => {
+                output::message("interrupted; the same command goes on from the finished shards");
+                Ending::Failed
+            }
+            Err(error) => failure(&error, &arguments.study),
+        };
+    }
     let result = study::run(&study, &options, Arc::clone(&display));
     // The bar goes before anything else is printed.
     drop(display);
@@ -62,11 +80,35 @@ pub(super) fn run(arguments: &RunArguments) -> Ending {
     }
 }
 
+/// Reads `I/N` with 1 ≤ I ≤ N.
+fn parse_part(text: &str) -> Result<Part, String> {
+    let part = text.split_once('/').and_then(|(number, of)| {
+        let (number, of) = (number.parse().ok()?, of.parse().ok()?);
+        Some(Part { number, of })
+    });
+    part.filter(|part| (1..=part.of).contains(&part.number))
+        .ok_or_else(|| "expected I/N with I from 1 to N, as in 2/8".into())
+}
+
+fn describe(part: Part, report: &ShardReport) -> String {
+    let folders = report.folders.iter();
+    let folders: Vec<String> = folders.map(|f| f.display().to_string()).collect();
+    format!(
+        "part {} of {}: {} of {} shards are in {}\n\
+         bring all parts together with `faultspace merge`, then run the study\n",
+        part.number,
+        part.of,
+        report.done,
+        report.all,
+        folders.join(" and ")
+    )
+}
+
 fn default_out(study: &Study) -> PathBuf {
     Path::new("reports").join(&study.name)
 }
 
-fn failure(error: &RunError, study: &Path) -> Ending {
+pub(super) fn failure(error: &RunError, study: &Path) -> Ending {
     match error {
         RunError::Input(error) => return output::bad_input(error),
         RunError::Interrupted => output::message(&format!(

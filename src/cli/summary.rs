@@ -20,31 +20,79 @@ pub(super) fn summary(result: &Value, out: &Path) -> String {
     let size = &result["size"];
     let unit = size["unit"].as_str().unwrap_or("");
     if let Some(value) = size["fault_tolerant"].as_f64() {
-        // More than six decimals help nobody on a terminal; result.json has them.
-        let error = size["error"].as_f64().unwrap_or(0.0);
-        let value = if error < 5e-7 {
-            format!("{value:.6}")
-        } else {
-            with_error(value, error)
-        };
+        let value = number(value, &size["error"]);
         let _ = writeln!(text, "  {:<25} {value} {unit}", "fault-tolerant workspace");
     }
     if let Some(value) = size["unrestricted"].as_f64() {
-        let _ = writeln!(text, "  {:<25} {value:.6} {unit}", "unrestricted workspace");
+        let value = number(value, &result["workspaces"]["unrestricted"]["error"]);
+        let _ = writeln!(text, "  {:<25} {value} {unit}", "unrestricted workspace");
     }
     if let Some(share) = size["normalised"].as_f64() {
         let _ = writeln!(text, "  {:<25} {:.3} %", "share", 100.0 * share);
     }
-    for (joint, limits) in limits(result).iter().enumerate() {
-        let label = format!("limits of joint {}", joint + 1);
+    pose(result, &mut text);
+    let slides = limits(&result["limits_m"]);
+    let kind = if slides.is_empty() { "" } else { "revolute " };
+    for (joint, limits) in limits(&result["limits_deg"]).iter().enumerate() {
+        let label = format!("limits of {kind}joint {}", joint + 1);
         let _ = writeln!(text, "  {label:<25} {:.3}° to {:.3}°", limits[0], limits[1]);
+    }
+    for (joint, limits) in slides.iter().enumerate() {
+        let label = format!("limits of prismatic joint {}", joint + 1);
+        let _ = writeln!(
+            text,
+            "  {label:<25} {:.4} m to {:.4} m",
+            limits[0], limits[1]
+        );
     }
     let _ = writeln!(text, "  {:<25} {}", "report", out.display());
     text
 }
 
-fn limits(result: &Value) -> Vec<[f64; 2]> {
-    let limits = &result["limits_deg"];
+/// More than six decimals help nobody on a terminal; result.json has them.
+fn number(value: f64, error: &Value) -> String {
+    let error = error.as_f64().unwrap_or(0.0);
+    if error < 5e-7 {
+        format!("{value:.6}")
+    } else {
+        with_error(value, error)
+    }
+}
+
+/// What a study of one pose found.
+fn pose(result: &Value, text: &mut String) {
+    let Some(manifolds) = result["manifolds"].as_array() else {
+        return;
+    };
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<25} {value}");
+    };
+    let lengths = manifolds
+        .iter()
+        .filter_map(|manifold| manifold["length"].as_f64());
+    let lengths: Vec<String> = lengths.map(|length| format!("{length:.3}")).collect();
+    line("self-motion manifolds", manifolds.len().to_string());
+    if !lengths.is_empty() {
+        line("lengths", format!("{} rad", lengths.join(", ")));
+    }
+    let completeness = &result["completeness"];
+    let missed = completeness["missed"].as_f64();
+    let kind = completeness["kind"].as_str().unwrap_or("?");
+    line(
+        "completeness",
+        match missed {
+            Some(missed) => format!("{kind}, one more start finds another with {missed:.1e}"),
+            None => kind.to_owned(),
+        },
+    );
+    if let Some(answer) = result["fault_tolerant"].as_bool() {
+        let answer = if answer { "yes" } else { "no" };
+        line("fault tolerant", answer.to_owned());
+    }
+}
+
+/// Pairs of a lower and an upper limit.
+fn limits(limits: &Value) -> Vec<[f64; 2]> {
     let side = |key: &str| limits[key].as_array().cloned().unwrap_or_default();
     let number = |value: &Value| value.as_f64().unwrap_or(f64::NAN);
     let pairs = side("lower").into_iter().zip(side("upper"));
@@ -73,6 +121,19 @@ mod tests {
             "12.600 %",
             "-18.200°",
         ] {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+    }
+
+    #[test]
+    fn manifolds_are_counted() {
+        let result = json!({
+            "study": "m", "kind": "manifolds", "status": "done",
+            "manifolds": [{ "length": 9.1 }, { "length": 26.0 }],
+            "completeness": { "kind": "evidence", "missed": 0.015 }, "fault_tolerant": true,
+        });
+        let text = summary(&result, Path::new("x"));
+        for part in ["manifolds     2", "9.100, 26.000 rad", "1.5e-2", "yes"] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
     }

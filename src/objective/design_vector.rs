@@ -5,19 +5,41 @@
 //! a̲₁ = −ā₁ [S4 §IV]; for pose tasks the same holds for joint n.
 
 use super::space::{SearchSpace, Variable};
+use crate::design::{JointKind, Robot, TaskSpace};
+use crate::workspace::hybrid::Growth;
 use crate::workspace::{ArtificialLimits, JointLimit};
-use std::f64::consts::{PI, TAU};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Share of random limits that are free or as narrow as allowed.
 const END_BIAS: f64 = 0.3;
+
+/// A box before it is laid out.
+const EMPTY: SearchSpace = SearchSpace {
+    variables: Vec::new(),
+    directions: Vec::new(),
+    blocks: Vec::new(),
+};
 
 /// What a point of the box stands for.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Design {
     /// Artificial limits of every joint.
     pub limits: ArtificialLimits,
-    /// Link lengths, metres.
+    /// Link lengths, metres; none where they are not searched and the score knows them.
     pub lengths: Vec<f64>,
+}
+
+/// A direction along which only one joint's limits change.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SingleLimit {
+    /// The joint, from 0.
+    pub joint: usize,
+    /// The variable that holds its width.
+    pub width_variable: usize,
+    /// Which end moves.
+    pub growth: Growth,
+    /// Change of the width per unit along the direction.
+    pub per_t: f64,
 }
 
 /// How limits and link lengths map to a box.
@@ -26,6 +48,8 @@ pub struct DesignSpace {
     lengths: Vec<f64>,
     /// Whether joint k's middle is searched.
     centred: Vec<bool>,
+    /// Whether joint k slides: its internal variable runs from −π/2 to π/2, and does not wrap.
+    slides: Vec<bool>,
     link_bounds: Option<Vec<[f64; 2]>>,
     space: SearchSpace,
 }
@@ -49,12 +73,35 @@ impl DesignSpace {
         let mut design = DesignSpace {
             lengths: lengths.to_vec(),
             centred,
+            slides: vec![false; n],
             link_bounds,
-            space: SearchSpace {
-                variables: Vec::new(),
-                directions: Vec::new(),
-                blocks: Vec::new(),
-            },
+            space: EMPTY,
+        };
+        design.lay_out(min_width);
+        design
+    }
+
+    /// The box of limits of any robot, in internal joint variables.
+    ///
+    /// `min_width` (radians) is the least width of any revolute joint's limits. Where turning
+    /// joint 1, or the last joint of a pose task, changes no size, limits are kept symmetric: the
+    /// volume of poses is the same after any motion from the left or from the right.
+    pub fn of_robot(robot: &Robot, task: TaskSpace, min_width: f64) -> DesignSpace {
+        let n = robot.joints();
+        let slides = |k: usize| robot.joint_kind(k) == JointKind::Prismatic;
+        let free = |k: usize| {
+            let limits = robot.physical_limits.as_ref();
+            !slides(k) && limits.is_none_or(|l| l.upper[k] - l.lower[k] >= TAU - 1e-9)
+        };
+        let is_pose = matches!(task, TaskSpace::PlanarPose | TaskSpace::SpatialPose);
+        let mut design = DesignSpace {
+            lengths: Vec::new(),
+            centred: (0..n)
+                .map(|k| free(k) && (k == 0 || is_pose && k + 1 == n))
+                .collect(),
+            slides: (0..n).map(slides).collect(),
+            link_bounds: None,
+            space: EMPTY,
         };
         design.lay_out(min_width);
         design
@@ -63,6 +110,39 @@ impl DesignSpace {
     /// The box.
     pub fn space(&self) -> &SearchSpace {
         &self.space
+    }
+
+    /// What changes along `direction`, if it is one joint's lower limit, upper limit or width.
+    pub fn single_limit(&self, direction: &[f64]) -> Option<SingleLimit> {
+        let moved = |k: &usize| direction[*k] != 0.0;
+        let mut w = 0;
+        for (joint, &centred) in self.centred.iter().enumerate() {
+            let count = if centred { 1 } else { 2 };
+            let own = w..w + count;
+            if own.clone().any(|k| moved(&k)) {
+                let alone = (0..direction.len()).filter(|k| !own.contains(k));
+                let centre = if centred { 0.0 } else { direction[w + 1] };
+                let per_t = direction[w];
+                let growth = if centre == 0.0 {
+                    Growth::Both
+                } else if centre == -0.5 * per_t {
+                    Growth::Lower
+                } else if centre == 0.5 * per_t {
+                    Growth::Upper
+                } else {
+                    return None;
+                };
+                let is_single = alone.filter(moved).count() == 0 && per_t != 0.0;
+                return is_single.then_some(SingleLimit {
+                    joint,
+                    width_variable: w,
+                    growth,
+                    per_t,
+                });
+            }
+            w += count;
+        }
+        None
     }
 
     fn lay_out(&mut self, min_width: f64) {
@@ -79,16 +159,20 @@ impl DesignSpace {
             end_bias: 0.0,
         };
         let mut steps: Vec<Vec<(usize, f64)>> = Vec::new();
-        for &centred in &self.centred {
+        for (&centred, &slides) in self.centred.iter().zip(&self.slides) {
             let w = self.space.variables.len();
-            self.space.variables.push(width.clone());
+            let (width, middle) = match slides {
+                false => (width.clone(), middle.clone()),
+                true => stroke(),
+            };
+            self.space.variables.push(width);
             if centred {
                 self.space.blocks.push(vec![w]);
                 steps.push(vec![(w, 1.0)]);
                 continue;
             }
             let c = w + 1;
-            self.space.variables.push(middle.clone());
+            self.space.variables.push(middle);
             self.space.blocks.push(vec![w, c]);
             steps.push(vec![(w, -1.0), (c, 0.5)]); // lower limit alone
             steps.push(vec![(w, 1.0), (c, 0.5)]); // upper limit alone
@@ -169,6 +253,20 @@ impl DesignSpace {
         self.space.confine(&mut x);
         x
     }
+}
+
+/// Width and middle of a prismatic joint's limits, whose stroke is half a turn.
+fn stroke() -> (Variable, Variable) {
+    let variable = |lower, upper, end_bias| Variable {
+        lower,
+        upper,
+        periodic: false,
+        end_bias,
+    };
+    (
+        variable(0.0, PI, END_BIAS),
+        variable(-FRAC_PI_2, FRAC_PI_2, 0.0),
+    )
 }
 
 fn dense(sparse: &[(usize, f64)], n: usize) -> Vec<f64> {

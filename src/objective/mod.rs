@@ -1,10 +1,12 @@
 //! What is maximised: design vectors and their scores.
 
 mod design_vector;
+mod hybrid;
 mod planar;
 mod space;
 
 pub use design_vector::{Design, DesignSpace};
+pub use hybrid::HybridObjective;
 pub use planar::{PlanarObjective, PlanarTask};
 pub use space::{SearchSpace, Variable};
 

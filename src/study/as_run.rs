@@ -2,8 +2,8 @@
 
 use super::folder::resolve;
 use super::settings::{
-    CoordinateAscent, DegreeLimits, Estimator, Genetic, OptimiserSettings, Question,
-    ReportSettings, Study,
+    CoordinateAscent, DegreeLimits, Estimator, Genetic, ManifoldSearch, OptimiserSettings, Pose,
+    Question, ReportSettings, Study,
 };
 use crate::design::TaskSpace;
 use crate::workspace::FailureSet;
@@ -29,10 +29,12 @@ struct AsRun<'a> {
     seed: u64,
     task: Task,
     limits: Option<&'a DegreeLimits>,
-    estimator: &'a Estimator,
+    estimator: Option<&'a Estimator>,
     estimate: Option<EstimateTable<'a>>,
     search: Option<SearchTable<'a>>,
     optimiser: Option<OptimiserTable<'a>>,
+    pose: Option<&'a Pose>,
+    manifolds: Option<&'a ManifoldSearch>,
     report: &'a ReportSettings,
 }
 
@@ -81,16 +83,19 @@ impl<'a> AsRun<'a> {
                 failures: failures(&study.failures, study.design.robot.joints()),
             },
             limits: None,
-            estimator: &study.estimator,
+            estimator: Some(&study.estimator),
             estimate: None,
             search: None,
             optimiser: None,
+            pose: None,
+            manifolds: None,
             report: &study.report,
         };
         match &study.question {
             Question::Estimate(estimate) => {
                 as_run.limits = Some(&estimate.limits);
-                as_run.estimate = Some(EstimateTable {
+                let exact = matches!(study.estimator, Estimator::Exact { .. });
+                as_run.estimate = exact.then_some(EstimateTable {
                     radii: &estimate.radii,
                 });
             }
@@ -103,6 +108,12 @@ impl<'a> AsRun<'a> {
                     link_upper: links.map(|links| links.link_upper.as_slice()),
                 });
                 as_run.optimiser = Some(OptimiserTable::new(&optimise.optimiser));
+            }
+            Question::Manifolds(manifolds) => {
+                as_run.limits = manifolds.limits.as_ref();
+                as_run.estimator = None;
+                as_run.pose = Some(&manifolds.pose);
+                as_run.manifolds = Some(&manifolds.search);
             }
         }
         as_run
@@ -174,13 +185,23 @@ mod tests {
         link_lower = [0.5, 0.5, 0.5]\nlink_upper = [2, 2, 2]\n[optimiser]\n\
         method = 'genetic'\n[optimiser.genetic]\nmutation_rate = 0.1\n\
         [estimator]\ntolerance = 1e-5\n";
+    const LATTICE: &str = "kind = 'estimate'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[limits]\nlower_deg = [0, 0, 0]\n\
+        upper_deg = [90, 90, 90]\n[estimator]\nmethod = 'hybrid'\n";
+    const GRID: &str = "kind = 'optimise'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[estimator]\nmethod = 'hybrid'\n\
+        [estimator.hybrid]\nsampling = 'grid'\ncell = 0.1\ncentres = true\nrule = 'paper'\n\
+        tolerance_rad = 0.02\nmemory_limit_mb = 7\n";
+    const MANIFOLDS: &str = "kind = 'manifolds'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[pose]\nposition = [1, 0.5]\n\
+        [manifolds]\nresidual = 1e-9\n";
 
     #[test]
     fn the_study_as_run_means_the_same_from_its_own_folder() {
         let dir = tempfile::tempdir().unwrap();
         let robot = dir.path().join("r.toml");
         std::fs::write(robot, "name = 'r'\nlinks = [1, 1, 1]").unwrap();
-        for text in [ESTIMATE, ASCENT, GENETIC] {
+        for text in [ESTIMATE, ASCENT, GENETIC, LATTICE, GRID, MANIFOLDS] {
             let written = dir.path().join("study.toml");
             std::fs::write(&written, text).unwrap();
             let study = Study::load(&written).unwrap();

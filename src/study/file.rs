@@ -3,10 +3,12 @@
 //! Values that only make sense beside others (limits beside the robot, `elite` beside
 //! `population`) are checked later, in `validate`.
 
+use super::hybrid_table::{self, HybridTable};
+use super::pose_table::{self, ManifoldsTable, PoseTable};
 use super::search::{self, OptimiserTable, SearchTable};
 use super::settings::{EstimatorMethod, FigureFormat};
 use crate::design::TaskSpace;
-use crate::diagnostic::{Document, InputError, Item, Problem, Source, Table, nearest};
+use crate::diagnostic::{Document, InputError, Item, Place, Source, Table, nearest};
 
 /// Keys of a study file.
 const KEYS: &[&str] = &[
@@ -20,10 +22,12 @@ const KEYS: &[&str] = &[
     "estimate",
     "search",
     "optimiser",
+    "pose",
+    "manifolds",
     "report",
 ];
 
-/// Kinds of studies that exist or are planned; the first two are served.
+/// Kinds of studies that exist or are planned; the first three are served.
 const KINDS: [&str; 7] = [
     "estimate",
     "optimise",
@@ -35,7 +39,7 @@ const KINDS: [&str; 7] = [
 ];
 
 /// Largest angle in a file, degrees: ten turns. Beyond, the fraction of a turn loses its digits.
-const MAX_DEGREES: f64 = 3600.0;
+pub(super) const MAX_DEGREES: f64 = 3600.0;
 
 /// Largest length in a file, metres; far above any arm, far below where squares overflow.
 pub(super) const MAX_LENGTH: f64 = 1e6;
@@ -54,6 +58,8 @@ pub struct StudyFile {
     pub(super) estimate: Option<Item<EstimateTable>>,
     pub(super) search: Option<Item<SearchTable>>,
     pub(super) optimiser: Option<Item<OptimiserTable>>,
+    pub(super) pose: Option<Item<PoseTable>>,
+    pub(super) manifolds: Option<Item<ManifoldsTable>>,
     pub(super) formats: Option<Item<Vec<Item<FigureFormat>>>>,
     pub(super) figures: Option<bool>,
 }
@@ -63,6 +69,7 @@ pub struct StudyFile {
 pub(super) enum Kind {
     Estimate,
     Optimise,
+    Manifolds,
 }
 
 /// `failures = "any"` or a list of joint numbers from 1.
@@ -77,6 +84,9 @@ pub(super) enum Failures {
 pub(super) struct LimitsTable {
     pub lower_deg: Item<Vec<Item<f64>>>,
     pub upper_deg: Item<Vec<Item<f64>>>,
+    /// Limits of prismatic joints.
+    pub lower: Option<Item<Vec<Item<f64>>>>,
+    pub upper: Option<Item<Vec<Item<f64>>>>,
 }
 
 /// The table `[estimator]`.
@@ -84,12 +94,15 @@ pub(super) struct LimitsTable {
 pub(super) struct EstimatorTable {
     pub method: Option<Item<EstimatorMethod>>,
     pub tolerance: Option<f64>,
+    pub hybrid: Option<HybridTable>,
+    /// Where the table stands, if it does.
+    pub place: Option<Place>,
 }
 
 /// The table `[estimate]`.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct EstimateTable {
-    pub radii: Option<Vec<f64>>,
+    pub radii: Option<Item<Vec<f64>>>,
 }
 
 impl StudyFile {
@@ -118,7 +131,7 @@ fn read(root: &Table) -> Option<StudyFile> {
     let design = root.text("design");
     let task = root.table("task", &["space", "failures"]);
     let space = task.as_ref().and_then(read_space);
-    let estimator = root.table("estimator", &["method", "tolerance"]);
+    let estimator = root.table("estimator", &["method", "tolerance", "hybrid"]);
     let report = root.table("report", &["formats", "figures"]);
     let file = StudyFile {
         title: root.text("title").map(|item| item.value),
@@ -131,10 +144,14 @@ fn read(root: &Table) -> Option<StudyFile> {
                 .as_ref()
                 .and_then(|table| table.number("tolerance", 1e-6..=1e-1, ""))
                 .map(|item| item.value),
+            hybrid: estimator.as_ref().and_then(hybrid_table::read),
+            place: root.key_place("estimator"),
         },
         estimate: read_estimate(root),
         search: search::read_search(root),
         optimiser: search::read_optimiser(root),
+        pose: pose_table::read_pose(root),
+        manifolds: pose_table::read_manifolds(root),
         formats: report.as_ref().and_then(read_formats),
         figures: report
             .and_then(|table| table.boolean("figures"))
@@ -151,11 +168,12 @@ fn read_kind(root: &Table) -> Option<Item<Kind>> {
     let kind = match text.value.as_str() {
         "estimate" => Kind::Estimate,
         "optimise" => Kind::Optimise,
+        "manifolds" => Kind::Manifolds,
         other => {
             let (message, help) = match nearest(other, &KINDS) {
                 Some(planned) if planned == other => (
                     "this version does not serve this kind of study",
-                    "ask for an estimate or an optimisation".to_owned(),
+                    "ask for an estimate, an optimisation or manifolds".to_owned(),
                 ),
                 Some(planned) => (
                     "unknown kind of study",
@@ -163,7 +181,7 @@ fn read_kind(root: &Table) -> Option<Item<Kind>> {
                 ),
                 None => ("unknown kind of study", String::new()),
             };
-            let expected = "\"estimate\" or \"optimise\"";
+            let expected = "\"estimate\", \"optimise\" or \"manifolds\"";
             root.problems()
                 .reject(&text.place, message, expected, &help);
             return None;
@@ -192,37 +210,37 @@ fn read_failures(task: &Table) -> Option<Item<Failures>> {
 }
 
 fn read_limits(root: &Table) -> Option<LimitsTable> {
-    let table = root.table("limits", &["lower_deg", "upper_deg"])?;
-    let read = |key| {
+    let table = root.table("limits", &["lower_deg", "upper_deg", "lower", "upper"])?;
+    let angles = |key| {
         table.require(key, &format!("{key} = [0.0, 0.0, 0.0]"));
         table.numbers(key, -MAX_DEGREES..=MAX_DEGREES, " degrees")
     };
-    let (lower, upper) = (read("lower_deg"), read("upper_deg"));
+    let lengths = |key| table.numbers(key, -MAX_LENGTH..=MAX_LENGTH, " m");
+    let (lower_deg, upper_deg) = (angles("lower_deg"), angles("upper_deg"));
+    let (lower, upper) = (lengths("lower"), lengths("upper"));
     Some(LimitsTable {
-        lower_deg: lower?,
-        upper_deg: upper?,
+        lower_deg: lower_deg?,
+        upper_deg: upper_deg?,
+        lower,
+        upper,
     })
 }
 
 fn read_method(table: &Table) -> Option<Item<EstimatorMethod>> {
-    let text = table.text("method")?;
-    if ["hybrid", "surrogate"].contains(&text.value.as_str()) {
-        let problem = Problem {
-            message: "this estimator is not available in this version".into(),
-            found: format!("\"{}\"", text.value),
-            expected: "\"exact\"".into(),
-            help: "use \"exact\", which serves planar robots with revolute joints".into(),
-        };
-        table.problems().report(&text.place, problem);
-        return None;
-    }
-    table.choice("method", &[("exact", EstimatorMethod::Exact)])
+    let methods = [
+        ("exact", EstimatorMethod::Exact),
+        ("hybrid", EstimatorMethod::Hybrid),
+    ];
+    table.choice("method", &methods)
 }
 
 fn read_estimate(root: &Table) -> Option<Item<EstimateTable>> {
     let table = root.table("estimate", &["radii"])?;
     let radii = table.numbers("radii", 0.0..=MAX_LENGTH, " m");
-    let radii = radii.map(|radii| radii.value.iter().map(|radius| radius.value).collect());
+    let radii = radii.map(|radii| Item {
+        value: radii.value.iter().map(|radius| radius.value).collect(),
+        place: radii.place,
+    });
     Some(Item {
         value: EstimateTable { radii },
         place: root.key_place("estimate")?,
@@ -257,7 +275,7 @@ mod tests {
 
     #[test]
     fn kinds_are_named() {
-        let planned = error(&HEAD.replace("estimate", "manifolds"));
+        let planned = error(&HEAD.replace("estimate", "train"));
         assert!(planned.problem().message.contains("does not serve"));
         let misspelt = error(&HEAD.replace("estimate", "optimize"));
         assert!(misspelt.problem().help.contains("\"optimise\""));
@@ -285,9 +303,18 @@ mod tests {
                 "limits.lower_deg",
             ),
             ("[limits]\nlower_deg = [1]", "limits.upper_deg"),
-            ("[estimator]\nmethod = 'hybrid'", "estimator.method"),
             ("[estimator]\nmethod = 'exakt'", "estimator.method"),
             ("[estimator]\ntolerance = 1.0", "estimator.tolerance"),
+            (
+                "[estimator.hybrid]\nsamples = 1",
+                "estimator.hybrid.samples",
+            ),
+            ("[estimator.hybrid]\ncell = 0.6", "estimator.hybrid.cell"),
+            ("[estimator.hybrid]\nrule = 'x'", "estimator.hybrid.rule"),
+            ("[pose]\nposition = [nan]", "pose.position"),
+            ("[pose]\nphi_deg = 1", "pose.position"),
+            ("[pose]\nposition = [1, 1]\nrotation = [1]", "pose.rotation"),
+            ("[manifolds]\nresidual = 1e-12", "manifolds.residual"),
             ("[estimate]\nradii = [-1]", "estimate.radii"),
             ("[search]\nmin_width_deg = 361", "search.min_width_deg"),
             ("[report]\nformats = ['pdf']", "report.formats"),

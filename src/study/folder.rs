@@ -106,6 +106,7 @@ mod tests {
             overwrite: false,
             threads: None,
             interrupt: Default::default(),
+            cache: None,
         }
     }
 

@@ -3,7 +3,7 @@
 use super::file::{LimitsTable, MAX_LENGTH, StudyFile};
 use super::search::SearchTable;
 use super::settings::{DegreeLimits, LinkBounds, Search};
-use crate::design::Robot;
+use crate::design::{JointKind, Robot};
 use crate::diagnostic::{Item, Place, Problem, Problems};
 
 /// Widths may exceed 360° by this much, degrees: the round-off of sums in other programs.
@@ -12,16 +12,20 @@ const WIDTH_TOLERANCE_DEG: f64 = 1e-9;
 /// Shortest link in a search, metres, as in a robot file.
 const MIN_LENGTH: f64 = 1e-6;
 
-/// The limits, if there is one pair per joint, in order and at most 360° apart.
+/// The limits, if there is one pair per joint, in order and, of revolute joints, at most 360°
+/// apart.
 pub(super) fn check(
     table: &LimitsTable,
     problems: &Problems,
-    joints: usize,
+    robot: &Robot,
 ) -> Option<DegreeLimits> {
-    let lower = check_count(&table.lower_deg, problems, joints);
-    let upper = check_count(&table.upper_deg, problems, joints);
+    let turning = numbers(robot, JointKind::Revolute);
+    let sliding = numbers(robot, JointKind::Prismatic);
+    let lower = check_count(&table.lower_deg, problems, turning.len(), robot);
+    let upper = check_count(&table.upper_deg, problems, turning.len(), robot);
+    let slides = check_slides(table, problems, &sliding, robot);
     let (lower, upper) = (lower?, upper?);
-    for (number, (lower, upper)) in (1..).zip(lower.iter().zip(upper)) {
+    for (number, (lower, upper)) in turning.iter().zip(lower.iter().zip(upper)) {
         let width = upper.value - lower.value;
         if width < 0.0 {
             let message = format!("the upper limit of joint {number} is below its lower limit");
@@ -35,10 +39,61 @@ pub(super) fn check(
             problems.reject(&upper.place, &message, &expected, help);
         }
     }
+    let [least, most] = slides?;
     Some(DegreeLimits {
         lower_deg: values(lower),
         upper_deg: values(upper),
+        lower: least,
+        upper: most,
     })
+}
+
+/// Numbers of the robot's joints of one kind.
+fn numbers(robot: &Robot, kind: JointKind) -> Vec<usize> {
+    let joints = 1..=robot.joints();
+    joints
+        .filter(|number| robot.joint_kind(number - 1) == kind)
+        .collect()
+}
+
+/// Limits of the prismatic joints `sliding`, metres; none for a robot without them.
+fn check_slides(
+    table: &LimitsTable,
+    problems: &Problems,
+    sliding: &[usize],
+    robot: &Robot,
+) -> Option<[Vec<f64>; 2]> {
+    let mut ends = [Vec::new(), Vec::new()];
+    let keys = ["lower", "upper"];
+    for ((end, item), key) in ends.iter_mut().zip([&table.lower, &table.upper]).zip(keys) {
+        match item {
+            Some(item) => *end = values(check_count(item, problems, sliding.len(), robot)?),
+            None if sliding.is_empty() => {}
+            None => {
+                let place = Place {
+                    key: format!("limits.{key}"),
+                    span: table.lower_deg.place.span.clone(),
+                };
+                let problem = Problem {
+                    message: "the robot's prismatic joints need limits in metres".into(),
+                    found: "nothing".into(),
+                    expected: format!("the key `{key}`, one entry per prismatic joint"),
+                    help: format!("add `{key} = […]`"),
+                };
+                problems.report_absent(&place, problem);
+                return None;
+            }
+        }
+    }
+    let upper = table.upper.iter().flat_map(|item| &item.value);
+    for ((number, lower), upper) in sliding.iter().zip(&ends[0]).zip(upper) {
+        if upper.value < *lower {
+            let message = format!("the upper limit of joint {number} is below its lower limit");
+            let expected = format!("at least the lower limit {lower}");
+            problems.reject(&upper.place, &message, &expected, "swap the two limits");
+        }
+    }
+    Some(ends)
 }
 
 /// Reports the first candidate of an optimisation if it lies outside the search space.
@@ -85,8 +140,8 @@ fn link_bounds(
     };
     let joints = robot.joints();
     let (low, high) = (
-        check_count(lower, problems, joints),
-        check_count(upper, problems, joints),
+        check_count(lower, problems, joints, robot),
+        check_count(upper, problems, joints, robot),
     );
     let (low, high) = (low?, high?);
     for (number, (low, high)) in (1..).zip(low.iter().zip(high)) {
@@ -147,20 +202,30 @@ fn report_lone(problems: &Problems, place: &Place, missing: &str) -> Option<Link
     None
 }
 
-/// The entries, if there is one per joint.
+/// The entries, if there are `count`: one per joint of the kind they are for.
 fn check_count<'i>(
     items: &'i Item<Vec<Item<f64>>>,
     problems: &Problems,
-    joints: usize,
+    count: usize,
+    robot: &Robot,
 ) -> Option<&'i [Item<f64>]> {
-    if items.value.len() == joints {
+    if items.value.len() == count {
         return Some(&items.value);
     }
+    let mixed = count != robot.joints();
     let problem = Problem {
         message: "needs one entry per joint".into(),
         found: format!("{} entries", items.value.len()),
-        expected: format!("{joints} entries, one for each joint of the robot"),
-        help: "give one entry per joint, base first".into(),
+        expected: match mixed {
+            false => format!("{count} entries, one for each joint of the robot"),
+            true => format!("{count} entries, one for each joint of this kind"),
+        },
+        help: match mixed {
+            false => "give one entry per joint, base first".into(),
+            true => "degrees (`lower_deg`, `upper_deg`) for revolute joints, metres (`lower`, \
+                     `upper`) for prismatic ones, base first"
+                .into(),
+        },
     };
     problems.report(&items.place, problem);
     None

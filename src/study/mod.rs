@@ -8,23 +8,38 @@ mod as_run;
 mod checkpoint;
 mod file;
 mod folder;
+mod hybrid_arm;
+mod hybrid_result;
+mod hybrid_run;
+mod hybrid_settings;
+mod hybrid_table;
 mod limits;
 mod load;
+mod manifold_result;
+mod manifold_run;
 mod optimise;
 mod picture;
 mod planar_arm;
+mod planar_run;
+mod pose_table;
+mod report_parts;
 mod result;
 mod run;
 mod search;
 mod serve;
 mod settings;
+mod shards;
+mod spatial_picture;
 mod validate;
 
 pub use file::StudyFile;
 pub use folder::check_folder;
+pub use hybrid_settings::{Hybrid, HybridSampling};
 pub use load::is_study;
 pub use run::{Progress, RunError, RunOptions, run};
 pub use settings::{
     CoordinateAscent, DegreeLimits, Design, Estimate, Estimator, EstimatorMethod, FigureFormat,
-    Genetic, LinkBounds, Optimise, OptimiserSettings, Question, ReportSettings, Search, Study,
+    Genetic, LinkBounds, ManifoldSearch, Manifolds, Optimise, OptimiserSettings, Pose, Question,
+    ReportSettings, Search, Study,
 };
+pub use shards::{MergeReport, Part, ShardReport, build_part, merge};

@@ -1,10 +1,10 @@
 //! The search of an optimisation study: a global stage, and after a genetic one a local one.
 //!
-//! Position tasks are scored exactly. Pose tasks are scored at the coarse resolution throughout,
-//! and the optimum is measured anew at the study's tolerance.
+//! Planar positions are scored exactly. Planar poses are scored at the coarse resolution
+//! throughout, and everything else over an atlas; then the optimum is measured anew at the study's
+//! tolerance or on an independent atlas.
 
 use super::checkpoint::{Record, Stage, Store};
-use super::planar_arm::PlanarStudy;
 use super::run::{Progress, RunError};
 use super::settings::{Optimise, OptimiserSettings};
 use crate::objective::{Design, DesignSpace, Objective};
@@ -27,11 +27,27 @@ const POLISHED: usize = 5;
 /// climbers that stall on one ridge at different places show each other its direction.
 const SPREAD: f64 = 0.01;
 
-/// Most sweeps for pose tasks, whose score costs milliseconds.
-const POSE_SWEEPS: usize = 25;
+/// What is searched, and how far it pays to search.
+pub(super) struct Terms<'a> {
+    pub space: &'a DesignSpace,
+    pub objective: &'a dyn Objective,
+    /// A first candidate.
+    pub start: Option<Vec<f64>>,
+    /// Most sweeps: fewer where a score costs milliseconds.
+    pub max_sweeps: usize,
+    /// Least relative gain of a sweep that counts: no less than what the score is good to.
+    pub tolerance: f64,
+}
 
-/// Relative gain of a sweep below which pose tasks have converged: their score is good to 1e-3.
-const POSE_TOLERANCE: f64 = 1e-5;
+impl Terms<'_> {
+    fn within_reason(&self, settings: CoordinateAscentSettings) -> CoordinateAscentSettings {
+        CoordinateAscentSettings {
+            max_sweeps: settings.max_sweeps.min(self.max_sweeps),
+            tolerance: settings.tolerance.max(self.tolerance),
+            ..settings
+        }
+    }
+}
 
 /// The best design found and how.
 pub(super) struct Optimum {
@@ -88,23 +104,16 @@ pub(super) struct Session {
 /// writing it failed.
 pub(super) fn search(
     optimise: &Optimise,
-    arm: &PlanarStudy,
+    terms: &Terms,
     seed: u64,
     saved: Option<Stage>,
     session: &Session,
 ) -> Result<Optimum, RunError> {
-    let space = design_space(optimise, arm);
-    let normalised = optimise.search.links.is_some();
-    let objective = arm.objective(space.clone(), normalised);
-    let start = optimise.start.as_ref();
-    let starts: Vec<Vec<f64>> = start
-        .map(|start| space.point(&arm.to_links(&start.to_limits())))
-        .into_iter()
-        .collect();
+    let (space, objective) = (terms.space, terms.objective);
     let (global, polish) = match saved {
         Some(Stage::Polish { before, snapshot }) => (Ended::known(before), Some(snapshot)),
         other => {
-            let ended = global_stage(optimise, arm, seed, starts, &objective, other, session)?;
+            let ended = global_stage(optimise, terms, seed, other, session)?;
             (ended, None)
         }
     };
@@ -121,44 +130,20 @@ pub(super) fn search(
             local: None,
         });
     }
-    let starts = polish_starts(&global.candidates, &objective, seed);
-    let solver =
-        CoordinateAscent::polish(&within_reason(Default::default(), arm), seed ^ 1, starts);
+    let starts = polish_starts(&global.candidates, objective, seed);
+    let settings = terms.within_reason(Default::default());
+    let solver = CoordinateAscent::polish(&settings, seed ^ 1, starts);
     let before = global.record.clone();
     let wrap = move |snapshot| Stage::Polish {
         before: before.clone(),
         snapshot,
     };
-    let local = stage(&objective, solver, polish, wrap, session, "polishing")?;
+    let local = stage(objective, solver, polish, wrap, session, "polishing")?;
     Ok(Optimum {
         design: space.design(&local.candidates[0].x),
         global: global.record,
         local: Some(local.record),
     })
-}
-
-fn design_space(optimise: &Optimise, arm: &PlanarStudy) -> DesignSpace {
-    let links = optimise.search.links.as_ref().map(|links| {
-        let pairs = links.link_lower.iter().zip(&links.link_upper);
-        pairs.map(|(&lower, &upper)| [lower, upper]).collect()
-    });
-    let min_width = optimise.search.min_width_deg.to_radians();
-    DesignSpace::new(&arm.lengths, min_width, arm.is_pose(), links)
-}
-
-/// Settings for a score that costs milliseconds and is good to 1e-3, if it is one.
-fn within_reason(
-    settings: CoordinateAscentSettings,
-    arm: &PlanarStudy,
-) -> CoordinateAscentSettings {
-    if !arm.is_pose() {
-        return settings;
-    }
-    CoordinateAscentSettings {
-        max_sweeps: settings.max_sweeps.min(POSE_SWEEPS),
-        tolerance: settings.tolerance.max(POSE_TOLERANCE),
-        ..settings
-    }
 }
 
 fn ascent_settings(ascent: &super::settings::CoordinateAscent) -> CoordinateAscentSettings {
@@ -186,20 +171,20 @@ fn genetic_settings(genetic: &super::settings::Genetic) -> GeneticSettings {
 
 fn global_stage(
     optimise: &Optimise,
-    arm: &PlanarStudy,
+    terms: &Terms,
     seed: u64,
-    starts: Vec<Vec<f64>>,
-    objective: &dyn Objective,
     saved: Option<Stage>,
     session: &Session,
 ) -> Result<Ended, RunError> {
+    let objective = terms.objective;
+    let starts: Vec<Vec<f64>> = terms.start.iter().cloned().collect();
     match (&optimise.optimiser, saved) {
         (OptimiserSettings::CoordinateAscent(ascent), saved) => {
             let saved = match saved {
                 Some(Stage::Ascent(snapshot)) => Some(snapshot),
                 _ => None,
             };
-            let settings = within_reason(ascent_settings(ascent), arm);
+            let settings = terms.within_reason(ascent_settings(ascent));
             let solver = CoordinateAscent::new(settings, seed, starts);
             let name = "coordinate ascent";
             stage(objective, solver, saved, Stage::Ascent, session, name)

@@ -1,6 +1,6 @@
 //! The planar robot of a study, and the exact measurements a study asks for.
 
-use super::settings::Study;
+use super::settings::{Estimator, Optimise, Study};
 use crate::angle::wrap;
 use crate::design::TaskSpace;
 use crate::objective::{DesignSpace, PlanarObjective, PlanarTask};
@@ -29,7 +29,11 @@ impl PlanarStudy {
     /// The robot is no planar chain; validation has refused that before.
     pub fn new(study: &Study) -> Result<PlanarStudy, anyhow::Error> {
         let chain = study.design.robot.planar_chain()?;
-        let resolution = PoseResolution::for_tolerance(study.estimator.tolerance);
+        let tolerance = match study.estimator {
+            Estimator::Exact { tolerance } => tolerance,
+            Estimator::Hybrid { .. } => anyhow::bail!("a hybrid study for the exact estimator"),
+        };
+        let resolution = PoseResolution::for_tolerance(tolerance);
         Ok(PlanarStudy {
             lengths: chain.lengths,
             offsets: chain.angle_offsets,
@@ -80,6 +84,16 @@ impl PlanarStudy {
             lengths,
             ..self.clone()
         }
+    }
+
+    /// What a search of this arm varies: limits between links and, if asked for, lengths.
+    pub fn design_space(&self, optimise: &Optimise) -> DesignSpace {
+        let links = optimise.search.links.as_ref().map(|links| {
+            let pairs = links.link_lower.iter().zip(&links.link_upper);
+            pairs.map(|(&lower, &upper)| [lower, upper]).collect()
+        });
+        let min_width = optimise.search.min_width_deg.to_radians();
+        DesignSpace::new(&self.lengths, min_width, self.is_pose(), links)
     }
 
     /// The score to maximise: exact for position tasks, coarse for pose tasks.

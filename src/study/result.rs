@@ -2,13 +2,13 @@
 
 use super::optimise::Optimum;
 use super::planar_arm::{AtRadius, PlanarStudy};
-use super::settings::{Optimise, Question, Study};
+use super::settings::{DegreeLimits, Optimise, Question, Study};
 use crate::angle::degree_pairs;
-use crate::workspace::{ArtificialLimits, Estimate, WorkspaceSizes};
+use crate::workspace::{ArtificialLimits, Estimate, FailureSet, WorkspaceSizes};
 use serde_json::{Value, json};
 
 /// Version of the result's schema.
-const SCHEMA: u32 = 1;
+pub(super) const SCHEMA: u32 = 1;
 
 /// Everything that a finished planar study knows.
 pub(super) struct Finding<'a> {
@@ -26,11 +26,7 @@ pub(super) struct Finding<'a> {
 
 impl Finding<'_> {
     pub fn status(&self) -> &'static str {
-        match self.optimum {
-            None => "done",
-            Some(optimum) if optimum.last().converged => "converged",
-            Some(_) => "stopped",
-        }
+        status(self.optimum)
     }
 
     pub fn to_json(&self) -> Value {
@@ -41,7 +37,7 @@ impl Finding<'_> {
             "kind": study.question.kind(),
             "status": self.status(),
             "size": self.size(),
-            "workspaces": self.workspaces(),
+            "workspaces": workspaces(self.sizes, &study.failures),
             "limits_deg": self.limits_deg(),
             "links": { "lengths": self.arm.lengths, "unit": "m" },
             "evaluations": self.optimum.map_or(0, Optimum::evaluations),
@@ -55,24 +51,19 @@ impl Finding<'_> {
         }
         result["notes"] = json!(self.notes);
         result["seconds"] = self.seconds.clone();
-        result["provenance"] = json!({
-            "version": env!("CARGO_PKG_VERSION"),
-            "seed": study.seed,
-            "threads": self.threads,
-            "design": study.design.robot.name,
-            "design_sha256": study.design.sha256,
-        });
+        result["provenance"] = provenance(study, self.threads);
         result
     }
 
     /// The limits of an estimate as the study has them, of an optimum as degrees.
     fn limits_deg(&self) -> Value {
+        let robot = &self.study.design.robot;
         match &self.study.question {
-            Question::Estimate(estimate) => {
-                let limits = &estimate.limits;
-                json!({ "lower": limits.lower_deg, "upper": limits.upper_deg })
+            Question::Estimate(estimate) => limits_deg(&estimate.limits),
+            _ => {
+                let limits = self.arm.to_joints(self.limits);
+                limits_deg(&DegreeLimits::from_limits(&limits, robot))
             }
-            Question::Optimise(_) => limits_deg(&self.arm.to_joints(self.limits)),
         }
     }
 
@@ -88,20 +79,6 @@ impl Finding<'_> {
         })
     }
 
-    fn workspaces(&self) -> Value {
-        let value =
-            |estimate: &Estimate| json!({ "size": estimate.value, "error": estimate.error });
-        let post_failure = (1..).zip(&self.sizes.post_failure).map(|(joint, size)| {
-            let prone = self.study.failures.contains(joint);
-            json!({ "joint": joint, "prone": prone, "size": size.value, "error": size.error })
-        });
-        json!({
-            "pre_failure": value(&self.sizes.pre_failure),
-            "post_failure": post_failure.collect::<Vec<Value>>(),
-            "unrestricted": value(&self.sizes.unrestricted),
-        })
-    }
-
     fn rotation_sets(&self) -> Value {
         let at = |&r: &f64| match self.arm.at_radius(self.limits, r) {
             AtRadius::Angles(set) => json!({ "r": r, "beta_deg": degree_pairs(&set) }),
@@ -111,13 +88,47 @@ impl Finding<'_> {
     }
 }
 
-fn limits_deg(limits: &ArtificialLimits) -> Value {
-    let lower = limits.joints().iter().map(|limit| limit.lower.to_degrees());
-    let upper = limits.joints().iter().map(|limit| limit.upper.to_degrees());
-    json!({ "lower": lower.collect::<Vec<f64>>(), "upper": upper.collect::<Vec<f64>>() })
+/// How the run ended.
+pub(super) fn status(optimum: Option<&Optimum>) -> &'static str {
+    match optimum {
+        None => "done",
+        Some(optimum) if optimum.last().converged => "converged",
+        Some(_) => "stopped",
+    }
 }
 
-fn search(optimum: &Optimum, optimise: &Optimise) -> Value {
+/// Every workspace with its size and error.
+pub(super) fn workspaces(sizes: &WorkspaceSizes, failures: &FailureSet) -> Value {
+    let value = |estimate: &Estimate| json!({ "size": estimate.value, "error": estimate.error });
+    let post_failure = (1..).zip(&sizes.post_failure).map(|(joint, size)| {
+        let prone = failures.contains(joint);
+        json!({ "joint": joint, "prone": prone, "size": size.value, "error": size.error })
+    });
+    json!({
+        "pre_failure": value(&sizes.pre_failure),
+        "post_failure": post_failure.collect::<Vec<Value>>(),
+        "unrestricted": value(&sizes.unrestricted),
+    })
+}
+
+/// Where the result comes from.
+pub(super) fn provenance(study: &Study, threads: usize) -> Value {
+    json!({
+        "version": env!("CARGO_PKG_VERSION"),
+        "seed": study.seed,
+        "threads": threads,
+        "design": study.design.robot.name,
+        "design_sha256": study.design.sha256,
+    })
+}
+
+/// Limits of revolute joints.
+pub(super) fn limits_deg(limits: &DegreeLimits) -> Value {
+    json!({ "lower": limits.lower_deg, "upper": limits.upper_deg })
+}
+
+/// How the search went.
+pub(super) fn search(optimum: &Optimum, optimise: &Optimise) -> Value {
     let stage = |name: &str, record: &super::checkpoint::Record| {
         json!({
             "stage": name,

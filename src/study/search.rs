@@ -23,6 +23,8 @@ pub(super) struct OptimiserTable {
     /// Where `elite` and `tournament` stand: they are limited by `population`.
     pub elite: Option<Item<u64>>,
     pub tournament: Option<Item<u64>>,
+    /// Whether the file gives `restarts`: the default depends on what a score costs.
+    pub restarts_given: bool,
 }
 
 /// The optimiser's `method`.
@@ -82,7 +84,9 @@ pub(super) fn read_optimiser(root: &Table) -> Option<Item<OptimiserTable>> {
             "polish",
         ],
     );
+    let restarts = ascent.as_ref().and_then(|table| table.entry("restarts"));
     let optimiser = OptimiserTable {
+        restarts_given: restarts.is_some(),
         method: method.map_or(Method::CoordinateAscent, |item| item.value),
         coordinate_ascent: ascent.as_ref().map(read_ascent).unwrap_or_default(),
         genetic: genetic.as_ref().map(read_genetic).unwrap_or_default(),

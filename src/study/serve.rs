@@ -1,51 +1,260 @@
-//! Which estimator can serve which robot and task.
+//! Which estimator serves which robot and task.
 
 use super::file::StudyFile;
-use crate::design::{Robot, TaskSpace};
+use super::settings::EstimatorMethod;
+use crate::design::{JointKind, Robot, TaskSpace};
 use crate::diagnostic::{Place, Problem, Problems};
+use crate::kinematics::joint_scales;
+use crate::manifold::MOST_REDUNDANT;
+use std::f64::consts::TAU;
 
 /// Names the estimator for everything "exact" cannot serve.
-const HYBRID: &str = "\"hybrid\" is the estimator for this, but this version does not have it";
+const HYBRID: &str = "use `method = \"hybrid\"`, which serves this";
+
+/// What is wrong wherever pre-images are needed and cannot be had.
+const CANNOT_TRACE: &str = "this version cannot trace the self-motion of this robot and task";
 
 /// Most joints of a planar pose task that is measured exactly.
 const MAX_POSE_JOINTS: usize = 5;
 
-/// Reports the first reason why the study's estimator cannot measure the robot's workspace.
-pub(super) fn check(file: &StudyFile, problems: &Problems, robot: &Robot) {
-    let task = file.space.value;
-    if robot.degree_of_redundancy(task) < 1 {
+/// Highest degree of redundancy n − m whose pre-images can be traced.
+const MAX_REDUNDANCY: isize = MOST_REDUNDANT as isize;
+
+/// Degree of redundancy whose pre-images are curves, which can be listed.
+const CURVES: isize = 1;
+
+/// The estimator that measures the study's workspaces. What it cannot serve is reported.
+pub(super) fn choose(file: &StudyFile, problems: &Problems, robot: &Robot) -> EstimatorMethod {
+    let given = file.estimator.method.as_ref();
+    let exact = exact_refusal(file, robot);
+    let method = match given {
+        Some(item) => item.value,
+        // Whoever writes the table means it.
+        None if file.estimator.hybrid.is_some() => EstimatorMethod::Hybrid,
+        None if exact.is_none() => EstimatorMethod::Exact,
+        None => EstimatorMethod::Hybrid,
+    };
+    if robot.degree_of_redundancy(file.space.value) < 1 {
+        report_no_redundancy(file, problems, robot);
+        return method;
+    }
+    let refusal = match method {
+        EstimatorMethod::Exact => exact,
+        EstimatorMethod::Hybrid => {
+            refuse_exact_only(file, problems);
+            hybrid_refusal(file, robot)
+        }
+    };
+    if let Some(Refusal { place, problem }) = refusal {
+        problems.report(given.map_or(place, |item| &item.place), problem);
+    }
+    method
+}
+
+/// Reports why the manifolds of a pose cannot be traced.
+pub(super) fn check_manifolds(file: &StudyFile, problems: &Problems, robot: &Robot) {
+    if robot.degree_of_redundancy(file.space.value) < 1 {
         report_no_redundancy(file, problems, robot);
         return;
     }
-    let method = file.estimator.method.as_ref().map(|item| &item.place);
-    let at = |place| method.unwrap_or(place);
-    if !task.is_planar() {
-        let found = format!("the task \"{task}\"");
-        let expected = "\"planar-position\" or \"planar-pose\"";
-        refuse(problems, at(&file.space.place), found, expected);
-    } else if let Err(not_planar) = robot.planar_chain() {
-        let found = format!("the robot `{}`: {}", robot.name, not_planar.reason);
-        let expected = "a planar chain of revolute joints";
-        refuse(problems, at(&file.design.place), found, expected);
-    } else if robot.physical_limits.is_some() {
-        let found = format!("the robot `{}` with physical limits", robot.name);
-        let expected = "a robot without `[physical_limits]`";
-        refuse(problems, at(&file.design.place), found, expected);
-    } else if task == TaskSpace::PlanarPose && robot.joints() > MAX_POSE_JOINTS {
-        let found = format!("{} joints for the task \"{task}\"", robot.joints());
-        let expected = format!("4 to {MAX_POSE_JOINTS} joints");
-        refuse(problems, at(&file.space.place), found, &expected);
+    let limited = file
+        .limits
+        .as_ref()
+        .and_then(|_| physical_refusal(file, robot));
+    if let Some(Refusal { place, problem }) = manifold_refusal(file, robot, CURVES).or(limited) {
+        problems.report(place, problem);
     }
 }
 
-fn refuse(problems: &Problems, place: &Place, found: String, expected: &str) {
-    let problem = Problem {
-        message: "the estimator \"exact\" cannot serve this robot and task".into(),
-        found,
-        expected: expected.to_owned(),
-        help: HYBRID.into(),
+/// Why a study cannot be served, and where that is to be mended.
+struct Refusal<'f> {
+    place: &'f Place,
+    problem: Problem,
+}
+
+fn exact_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    let task = file.space.value;
+    let (place, found, expected) = if !task.is_planar() {
+        let expected = "\"planar-position\" or \"planar-pose\"";
+        let found = format!("the task \"{task}\"");
+        (&file.space.place, found, expected.to_owned())
+    } else if let Err(not_planar) = robot.planar_chain() {
+        let found = format!("the robot `{}`: {}", robot.name, not_planar.reason);
+        let expected = "a planar chain of revolute joints";
+        (&file.design.place, found, expected.to_owned())
+    } else if robot.physical_limits.is_some() {
+        let found = format!("the robot `{}` with physical limits", robot.name);
+        let expected = "a robot without `[physical_limits]`";
+        (&file.design.place, found, expected.to_owned())
+    } else if task == TaskSpace::PlanarPose && robot.joints() > MAX_POSE_JOINTS {
+        let found = format!("{} joints for the task \"{task}\"", robot.joints());
+        let expected = format!("4 to {MAX_POSE_JOINTS} joints");
+        (&file.space.place, found, expected)
+    } else {
+        return None;
     };
-    problems.report(place, problem);
+    let message = "the estimator \"exact\" cannot serve this robot and task";
+    // Where "hybrid" has its own reason to refuse, that is the better hint.
+    let help = match hybrid_refusal(file, robot) {
+        None => HYBRID.to_owned(),
+        Some(other) => format!(
+            "\"hybrid\" cannot either: it expects {}",
+            other.problem.expected
+        ),
+    };
+    Some(refusal(place, message, found, expected, help))
+}
+
+/// The atlas holds pre-images of up to [`MAX_REDUNDANCY`] degrees of redundancy.
+fn hybrid_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    manifold_refusal(file, robot, MAX_REDUNDANCY)
+}
+
+/// Pre-images are traced for at most `most` degrees of redundancy, about a revolute joint 1.
+fn manifold_refusal<'f>(file: &'f StudyFile, robot: &Robot, most: isize) -> Option<Refusal<'f>> {
+    let task = file.space.value;
+    let design = &file.design.place;
+    let name = &robot.name;
+    let degree = robot.degree_of_redundancy(task);
+    let message = CANNOT_TRACE;
+    if degree > most {
+        let found = format!(
+            "{} joints: a degree of redundancy of {degree}",
+            robot.joints()
+        );
+        let most = task.dimension() as isize + most;
+        let expected = format!("at most {most} joints for \"{task}\"");
+        let help = "choose a task of more dimensions or a robot with fewer joints";
+        return Some(refusal(
+            &file.space.place,
+            message,
+            found,
+            expected,
+            help.into(),
+        ));
+    }
+    if let (true, Err(not_planar)) = (task.is_planar(), robot.planar_chain()) {
+        let found = format!("the robot `{name}`: {}", not_planar.reason);
+        let expected = "a planar chain of revolute joints, because the task is planar";
+        let help = "choose a spatial task, or a planar robot";
+        return Some(refusal(
+            design,
+            message,
+            found,
+            expected.into(),
+            help.into(),
+        ));
+    }
+    if !task.is_planar() && robot.planar_chain().is_ok() {
+        let found = format!("the robot `{name}`, which moves in a plane");
+        let expected = "a robot whose axes are not all parallel, because the task is spatial";
+        let help = "choose a planar task";
+        return Some(refusal(
+            design,
+            message,
+            found,
+            expected.into(),
+            help.into(),
+        ));
+    }
+    prismatic_refusal(file, robot)
+}
+
+/// Joint 1 turns, and a stroke sets the scale of every other prismatic joint.
+fn prismatic_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    let design = &file.design.place;
+    let message = CANNOT_TRACE;
+    if robot.joint_kind(0) == JointKind::Prismatic {
+        let found = format!("the robot `{}`, whose joint 1 is prismatic", robot.name);
+        let expected = "a revolute joint 1, about which the workspace is turned";
+        let help = "choose a robot whose joint 1 turns";
+        return Some(refusal(
+            design,
+            message,
+            found,
+            expected.into(),
+            help.into(),
+        ));
+    }
+    if joint_scales(robot).is_none() {
+        let prismatic = |index: &usize| robot.joint_kind(*index) == JointKind::Prismatic;
+        let number = (0..robot.joints()).find(prismatic).map_or(0, |k| k + 1);
+        let found = format!(
+            "joint {number} of `{}`, which slides without end",
+            robot.name
+        );
+        let expected = "physical limits of every prismatic joint";
+        let help = "add `lower` and `upper` to `[physical_limits]` of the robot file";
+        return Some(refusal(
+            design,
+            message,
+            found,
+            expected.into(),
+            help.into(),
+        ));
+    }
+    None
+}
+
+/// Physical limits of joint 1 would make every other joint's test depend on β, which the study of
+/// one pose does not do.
+fn physical_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    let design = &file.design.place;
+    let message = CANNOT_TRACE;
+    let limits = robot.physical_limits.as_ref();
+    if limits.is_some_and(|limits| limits.upper[0] - limits.lower[0] < TAU - 1e-9) {
+        let found = format!("the robot `{}` with physical limits of joint 1", robot.name);
+        let expected = "a joint 1 that turns freely, or limits that are 360° apart";
+        let help = "write [-180, 180] for joint 1: the turn of the whole arm is then not limited";
+        return Some(refusal(
+            design,
+            message,
+            found,
+            expected.into(),
+            help.into(),
+        ));
+    }
+    None
+}
+
+/// Link lengths are searched with the exact estimator alone, radii likewise.
+fn refuse_exact_only(file: &StudyFile, problems: &Problems) {
+    let search = file.search.as_ref().map(|item| &item.value);
+    let bounds = search.and_then(|s| s.link_lower.as_ref().or(s.link_upper.as_ref()));
+    if let Some(bounds) = bounds {
+        problems.reject(
+            &bounds.place,
+            "link lengths cannot be searched with the estimator \"hybrid\" in this version",
+            "a search for limits alone",
+            "remove `link_lower` and `link_upper`, or use `method = \"exact\"`",
+        );
+    }
+    let estimate = file.estimate.as_ref().map(|item| &item.value);
+    let radii = estimate.and_then(|estimate| estimate.radii.as_ref());
+    if let Some(radii) = radii.filter(|radii| !radii.value.is_empty()) {
+        problems.reject(
+            &radii.place,
+            "the estimator \"hybrid\" reports no rotation sets at radii",
+            "no `radii`",
+            "remove `radii`; `kind = \"manifolds\"` gives the rotation set of one pose",
+        );
+    }
+}
+
+fn refusal<'f>(
+    place: &'f Place,
+    message: &str,
+    found: String,
+    expected: String,
+    help: String,
+) -> Refusal<'f> {
+    let problem = Problem {
+        message: message.to_owned(),
+        found,
+        expected,
+        help,
+    };
+    Refusal { place, problem }
 }
 
 fn report_no_redundancy(file: &StudyFile, problems: &Problems, robot: &Robot) {

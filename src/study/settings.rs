@@ -3,7 +3,10 @@
 //! Field names are the keys of the study file. Angles stay in degrees, as the file has them, so
 //! that the study as run reads like the study as written; [`DegreeLimits::to_limits`] converts.
 
-use crate::design::{Robot, TaskSpace};
+use super::hybrid_settings::Hybrid;
+use crate::design::{JointKind, Robot, TaskSpace};
+use crate::kinematics::{JointScale, joint_scales};
+use crate::manifold::SearchSettings;
 use crate::optimiser::{CoordinateAscentSettings, GeneticSettings};
 use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use serde::Serialize;
@@ -26,7 +29,7 @@ pub struct Study {
     pub failures: FailureSet,
     /// What is asked.
     pub question: Question,
-    /// How workspaces are measured.
+    /// How workspaces are measured; a study of manifolds measures none.
     pub estimator: Estimator,
     /// What the report contains.
     pub report: ReportSettings,
@@ -51,6 +54,8 @@ pub enum Question {
     Estimate(Estimate),
     /// Which limits make the fault-tolerant workspace largest?
     Optimise(Optimise),
+    /// With which configurations does the robot hold this pose?
+    Manifolds(Manifolds),
 }
 
 /// Settings of `kind = "estimate"`.
@@ -73,13 +78,52 @@ pub struct Optimise {
     pub optimiser: OptimiserSettings,
 }
 
-/// Artificial limits in degrees, joint 1 first; lower ≤ upper, at most 360 apart.
+/// Settings of `kind = "manifolds"`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Manifolds {
+    /// The pose, in the world frame.
+    pub pose: Pose,
+    /// Artificial limits, if the pose's tolerance of failures is asked for.
+    pub limits: Option<DegreeLimits>,
+    /// How the manifolds are searched.
+    pub search: ManifoldSearch,
+}
+
+/// A tool pose in the world frame, with as much orientation as the task has.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Pose {
+    /// x, y and, in space, z; metres.
+    pub position: Vec<f64>,
+    /// Rotation matrix row by row, for spatial poses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub rotation: Option<[[f64; 3]; 3]>,
+    /// Direction of the tool, degrees, for planar poses.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub phi_deg: Option<f64>,
+}
+
+/// How manifolds of one pose are searched.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct ManifoldSearch {
+    /// Least number of random starts, default 64.
+    pub seeds: u64,
+    /// Residual of the vertices, share of the robot's size, default 1e-6.
+    pub residual: f64,
+}
+
+/// Artificial limits as files have them: lower ≤ upper, joint 1 first.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct DegreeLimits {
-    /// Lower limits, degrees.
+    /// Lower limits of revolute joints, degrees.
     pub lower_deg: Vec<f64>,
-    /// Upper limits, degrees.
+    /// Upper limits of revolute joints, degrees, at most 360 above the lower ones.
     pub upper_deg: Vec<f64>,
+    /// Lower limits of prismatic joints, metres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub lower: Vec<f64>,
+    /// Upper limits of prismatic joints, metres.
+    #[serde(skip_serializing_if = "Vec::is_empty")]
+    pub upper: Vec<f64>,
 }
 
 /// The search space.
@@ -150,19 +194,27 @@ pub struct Genetic {
 
 /// How workspaces are measured.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct Estimator {
-    /// The method, default exact.
-    pub method: EstimatorMethod,
-    /// Relative error target of quadrature for pose tasks, default 1e-3.
-    pub tolerance: f64,
+#[serde(tag = "method", rename_all = "kebab-case")]
+pub enum Estimator {
+    /// Closed-form rotation sets of planar robots.
+    Exact {
+        /// Relative error target of quadrature for pose tasks, default 1e-3.
+        tolerance: f64,
+    },
+    /// Pre-images of sampled task points, for any serial robot.
+    Hybrid {
+        /// How points are sampled and pre-images traced.
+        hybrid: Hybrid,
+    },
 }
 
 /// The estimators of this version.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
-#[serde(rename_all = "kebab-case")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum EstimatorMethod {
-    /// Closed-form rotation sets of planar robots.
+    /// `exact`.
     Exact,
+    /// `hybrid`.
+    Hybrid,
 }
 
 /// What the report contains.
@@ -190,6 +242,7 @@ impl Question {
         match self {
             Question::Estimate(_) => "estimate",
             Question::Optimise(_) => "optimise",
+            Question::Manifolds(_) => "manifolds",
         }
     }
 }
@@ -205,12 +258,57 @@ impl OptimiserSettings {
 }
 
 impl DegreeLimits {
-    /// The limits in radians.
-    pub fn to_limits(&self) -> ArtificialLimits {
-        let pairs = self.lower_deg.iter().zip(&self.upper_deg);
-        let joint =
-            |(lower, upper): (&f64, &f64)| JointLimit::new(lower.to_radians(), upper.to_radians());
-        ArtificialLimits::new(pairs.map(joint).collect())
+    /// The limits in internal joint variables of `robot`, which has as many joints of each kind:
+    /// radians for revolute joints (see [`JointScale`] for the others).
+    pub fn to_limits(&self, robot: &Robot) -> ArtificialLimits {
+        let scales = joint_scales(robot).unwrap_or_default();
+        let mut turns = self.lower_deg.iter().zip(&self.upper_deg);
+        let mut slides = self.lower.iter().zip(&self.upper);
+        let joint = |index: usize| {
+            let scale = scales.get(index).unwrap_or(&JointScale::REVOLUTE);
+            let pair = match robot.joint_kind(index) {
+                JointKind::Revolute => turns.next().map(|(l, u)| [l, u].map(|x| x.to_radians())),
+                JointKind::Prismatic => slides.next().map(|(l, u)| [l, u].map(|x| scale.inner(*x))),
+            };
+            pair.map_or(JointLimit::FREE, |[lower, upper]| {
+                JointLimit::new(lower, upper)
+            })
+        };
+        ArtificialLimits::new((0..robot.joints()).map(joint).collect())
+    }
+
+    /// Limits in internal joint variables of `robot` as files have them.
+    pub fn from_limits(limits: &ArtificialLimits, robot: &Robot) -> DegreeLimits {
+        let scales = joint_scales(robot).unwrap_or_default();
+        let mut written = DegreeLimits {
+            lower_deg: Vec::new(),
+            upper_deg: Vec::new(),
+            lower: Vec::new(),
+            upper: Vec::new(),
+        };
+        for (index, limit) in limits.joints().iter().enumerate() {
+            let scale = scales.get(index).unwrap_or(&JointScale::REVOLUTE);
+            match robot.joint_kind(index) {
+                JointKind::Revolute => {
+                    written.lower_deg.push(limit.lower.to_degrees());
+                    written.upper_deg.push(limit.upper.to_degrees());
+                }
+                JointKind::Prismatic => {
+                    written.lower.push(scale.outer(limit.lower));
+                    written.upper.push(scale.outer(limit.upper));
+                }
+            }
+        }
+        written
+    }
+}
+
+impl Default for ManifoldSearch {
+    fn default() -> ManifoldSearch {
+        ManifoldSearch {
+            seeds: SearchSettings::default().least_seeds as u64,
+            residual: 1e-6,
+        }
     }
 }
 
@@ -246,10 +344,7 @@ impl Default for Genetic {
 
 impl Default for Estimator {
     fn default() -> Estimator {
-        Estimator {
-            method: EstimatorMethod::Exact,
-            tolerance: 1e-3,
-        }
+        Estimator::Exact { tolerance: 1e-3 }
     }
 }
 

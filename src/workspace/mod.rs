@@ -3,12 +3,14 @@
 pub mod hybrid;
 mod limits;
 mod map;
+mod one_pose;
 pub mod planar;
 mod size;
 mod spatial_map;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
+pub use one_pose::{PoseTolerance, ranges_within};
 pub use size::{Estimate, WorkspaceSizes};
 pub use spatial_map::SpatialShareMap;
 pub(crate) use spatial_map::interval;

@@ -114,6 +114,12 @@ impl AtlasStore {
         Ok(())
     }
 
+    /// How many of the first `shards` shards are not there, or not sound.
+    pub fn missing(&self, shards: u64) -> u64 {
+        let absent = |shard: &u64| self.load(*shard).is_none();
+        (0..shards).filter(absent).count() as u64
+    }
+
     /// Copies every sound shard of this atlas out of `other` (a cache folder or the atlas'
     /// folder itself) that is missing here; returns how many were.
     ///

@@ -1,0 +1,248 @@
+//! Runs a study with the hybrid estimator: traces an atlas, then scores limits over it.
+
+use super::hybrid_arm::{Needed, Samples, check_cache};
+use super::hybrid_result::HybridFinding;
+use super::hybrid_settings::Hybrid;
+use super::optimise::{Optimum, Terms, search};
+use super::report_parts::{convergence, failures_label, formats, provenance_rows, size_notes};
+use super::result::status;
+use super::run::{Ready, RunError, RunOptions};
+use super::settings::{DegreeLimits, Optimise, Question, Study};
+use super::spatial_picture::Picture;
+use crate::design::JointKind;
+use crate::objective::{DesignSpace, HybridObjective};
+use crate::report::{self, Report, write_report};
+use crate::workspace::hybrid::Atlas;
+use crate::workspace::{ArtificialLimits, Estimate, WorkspaceSizes};
+use serde_json::{Value, json};
+use std::time::Instant;
+
+/// Most sweeps of a search over an atlas.
+const SWEEPS: usize = 12;
+
+/// Relative gain of a sweep below which a search over an atlas has converged: far below the
+/// standard error of any affordable atlas.
+const TOLERANCE: f64 = 1e-4;
+
+/// Runs `study` to its report and returns the content of `result.json`.
+///
+/// # Errors
+/// The atlas is too large, the run was interrupted, or a file could not be written.
+pub(super) fn run(
+    study: &Study,
+    hybrid: &Hybrid,
+    options: &RunOptions,
+    ready: Ready,
+) -> Result<Value, RunError> {
+    check_cache(options.cache.as_deref())?;
+    let given = match &study.question {
+        Question::Estimate(estimate) => Some(estimate.limits.to_limits(&study.design.robot)),
+        _ => None,
+    };
+    let needed = Needed::new(study, hybrid, Samples::OfTheSeed, given.as_ref())?;
+    let mut run = Run {
+        study,
+        hybrid,
+        options,
+        ready,
+        tracing: 0.0,
+        searching: 0.0,
+    };
+    // The report folder stays untouched until there is something to report on: a run that is
+    // killed while it traces starts again without `--overwrite`, from the cache.
+    let atlas = run.trace(&needed)?;
+    run.ready.begin(options)?;
+    let result = match &study.question {
+        Question::Estimate(estimate) => {
+            let limits = estimate.limits.to_limits(&study.design.robot);
+            run.write(&atlas, &estimate.limits, &limits, None)
+        }
+        Question::Optimise(optimise) => run.optimise(optimise, atlas),
+        Question::Manifolds(_) => {
+            Err(anyhow::anyhow!("a study of manifolds measures no workspace").into())
+        }
+    }?;
+    run.ready.session.store.remove();
+    Ok(result)
+}
+
+/// The state of a run.
+struct Run<'a> {
+    study: &'a Study,
+    hybrid: &'a Hybrid,
+    options: &'a RunOptions,
+    ready: Ready,
+    /// Seconds spent so far.
+    tracing: f64,
+    searching: f64,
+}
+
+/// An optimum and its size on the samples that it was searched on.
+struct Searched {
+    optimum: Optimum,
+    size: Estimate,
+}
+
+impl Run<'_> {
+    fn trace(&mut self, needed: &Needed) -> Result<Atlas, RunError> {
+        let started = Instant::now();
+        let session = &self.ready.session;
+        let cache = self.options.cache.as_deref();
+        let progress = session.progress.as_ref();
+        let atlas = needed.build(self.study, cache, &session.interrupt, progress)?;
+        self.tracing += started.elapsed().as_secs_f64();
+        Ok(atlas)
+    }
+
+    /// Searches on one atlas and measures on another: the maximum of noisy scores is too high.
+    fn optimise(&mut self, optimise: &Optimise, atlas: Atlas) -> Result<Value, RunError> {
+        let started = Instant::now();
+        let searched = self.search(optimise, &atlas)?;
+        self.searching = started.elapsed().as_secs_f64();
+        drop(atlas);
+        let limits = searched.optimum.design.limits.clone();
+        let needed = Needed::new(self.study, self.hybrid, Samples::Independent, Some(&limits))?;
+        let atlas = self.trace(&needed)?;
+        let written = DegreeLimits::from_limits(&limits, &self.study.design.robot);
+        self.write(&atlas, &written, &limits, Some(&searched))
+    }
+
+    fn search(&mut self, optimise: &Optimise, atlas: &Atlas) -> Result<Searched, RunError> {
+        let study = self.study;
+        let robot = &study.design.robot;
+        let min_width = optimise.search.min_width_deg.to_radians();
+        let space = DesignSpace::of_robot(robot, study.task, min_width);
+        let (failures, rule) = (study.failures.clone(), self.hybrid.rule);
+        let objective = HybridObjective::new(space.clone(), atlas, failures, rule);
+        let start = optimise.start.as_ref();
+        let terms = Terms {
+            space: &space,
+            objective: &objective,
+            start: start.map(|start| space.point(&start.to_limits(robot))),
+            max_sweeps: SWEEPS,
+            tolerance: TOLERANCE,
+        };
+        let saved = self.ready.saved.take();
+        let optimum = search(optimise, &terms, study.seed, saved, &self.ready.session)?;
+        let sizes = atlas.sizes(&optimum.design.limits, &study.failures, rule);
+        Ok(Searched {
+            optimum,
+            size: sizes.fault_tolerant,
+        })
+    }
+
+    /// Measures the workspaces, draws the figures and writes the report.
+    fn write(
+        &self,
+        atlas: &Atlas,
+        written: &DegreeLimits,
+        limits: &ArtificialLimits,
+        searched: Option<&Searched>,
+    ) -> Result<Value, RunError> {
+        let study = self.study;
+        let session = &self.ready.session;
+        let optimum = searched.map(|searched| &searched.optimum);
+        let best = optimum.map_or(f64::NAN, Optimum::score);
+        session.progress.update(0, 2, best, "measuring workspaces");
+        let started = Instant::now();
+        let sizes = atlas.sizes(limits, &study.failures, self.hybrid.rule);
+        let measured = started.elapsed().as_secs_f64();
+        session.progress.update(1, 2, best, "writing the report");
+        let notes = self.notes(atlas, &sizes, limits, optimum.is_some());
+        let finding = HybridFinding {
+            study,
+            limits: written,
+            sizes: &sizes,
+            atlas,
+            optimum,
+            searched_error: searched.map(|searched| searched.size.error),
+            seconds: json!({
+                "total": session.store.seconds(),
+                "atlas": self.tracing,
+                "search": self.searching,
+                "measure": measured,
+            }),
+            threads: rayon::current_num_threads(),
+            notes: &notes,
+        };
+        let result = finding.to_json();
+        if study.report.figures {
+            let robot = &study.design.robot;
+            let picture = Picture::of(atlas, robot, limits, &study.failures);
+            let figures = picture.figures(&robot.name);
+            let mut report = self.report(&finding, limits, result.clone());
+            report.workspace = picture.planar(&robot.name);
+            report.figures = figures.iter().map(|figure| figure.as_ref()).collect();
+            report.points = picture.spatial();
+            write_report(&report, &self.options.out, &formats(study))
+                .map_err(anyhow::Error::from)?;
+        } else {
+            let path = self.options.out.join("result.json");
+            report::write_json(&path, &result).map_err(anyhow::Error::from)?;
+        }
+        Ok(result)
+    }
+
+    fn report<'r>(
+        &'r self,
+        finding: &HybridFinding<'r>,
+        limits: &'r ArtificialLimits,
+        result_json: Value,
+    ) -> Report<'r> {
+        let study = self.study;
+        let robot = &study.design.robot;
+        let optimum = finding.optimum;
+        Report {
+            title: study.title.clone().unwrap_or_else(|| study.name.clone()),
+            study: study.name.clone(),
+            robot: robot.name.clone(),
+            source: robot.source.clone().unwrap_or_default(),
+            task: study.task.to_string(),
+            failures_label: failures_label(study),
+            status: status(optimum).into(),
+            failures: &study.failures,
+            sizes: finding.sizes,
+            unit: study.task.unit().into(),
+            limits,
+            links: &[],
+            workspace: None,
+            figures: Vec::new(),
+            points: None,
+            convergence: optimum.map(|optimum| convergence(study, optimum, self.searching)),
+            sensitivity: None,
+            result_json,
+            study_toml: self.ready.study_toml.clone(),
+            provenance: provenance_rows(study, finding.threads),
+            notes: finding.notes.to_vec(),
+        }
+    }
+
+    /// What a reader of the numbers must not miss.
+    fn notes(
+        &self,
+        atlas: &Atlas,
+        sizes: &WorkspaceSizes,
+        limits: &ArtificialLimits,
+        searched: bool,
+    ) -> Vec<String> {
+        let robot = &self.study.design.robot;
+        let mut notes = size_notes(sizes, limits, robot, searched);
+        let counts = atlas.counts();
+        if counts.failed > 0 {
+            notes.push(format!(
+                "The pre-images of {} of {} reachable samples failed a check of completeness; they \
+                 count with what was found.",
+                counts.failed, counts.reachable
+            ));
+        }
+        let slides = |index: &usize| robot.joint_kind(*index) == JointKind::Prismatic;
+        for index in (0..robot.joints()).filter(slides) {
+            notes.push(format!(
+                "Figures and tables of limits show prismatic joint {} with its stroke as half a \
+                 turn; result.json has metres.",
+                index + 1
+            ));
+        }
+        notes
+    }
+}

@@ -1,0 +1,131 @@
+//! Runs a study of one pose: traces its self-motion manifolds and judges its tolerance of failures.
+
+use super::manifold_result::{ManifoldFinding, curves};
+use super::run::{Ready, RunError, RunOptions};
+use super::settings::{ManifoldSearch, Manifolds, Pose, Study};
+use crate::angle::Arc;
+use crate::design::{JointKind, Robot};
+use crate::manifold::{PreImage, PreImageSearch, SearchSettings};
+use crate::report;
+use crate::sampling;
+use crate::workspace::PoseTolerance;
+use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
+use serde_json::{Value, json};
+use std::f64::consts::{FRAC_PI_2, TAU};
+use std::time::Instant;
+
+/// Residual above which one Newton step per vertex is enough.
+const ONE_STEP: f64 = 1e-6;
+
+/// Runs `study` and returns the content of `result.json`.
+///
+/// # Errors
+/// A file could not be written.
+pub(super) fn run(
+    study: &Study,
+    manifolds: &Manifolds,
+    options: &RunOptions,
+    ready: Ready,
+) -> Result<Value, RunError> {
+    ready.begin(options)?;
+    let progress = &ready.session.progress;
+    progress.update(0, 1, f64::NAN, "tracing");
+    let started = Instant::now();
+    let robot = &study.design.robot;
+    let mut search = PreImageSearch::new(robot, study.task, settings(&manifolds.search))
+        .map_err(anyhow::Error::from)?;
+    let pose = tool(&manifolds.pose);
+    let pre_image = search.find(&pose, &mut sampling::stream(study.seed, 0));
+    let physical = physical(robot);
+    let tolerance = manifolds.limits.as_ref().map(|limits| {
+        let limits = limits.to_limits(robot);
+        PoseTolerance::of(&pre_image, &physical, &limits, &study.failures)
+    });
+    let finding = ManifoldFinding {
+        study,
+        manifolds,
+        pre_image: &pre_image,
+        physical: &physical,
+        tolerance: tolerance.as_ref(),
+        residual: residual(&search, &pre_image, &pose, study),
+        seconds: json!({
+            "total": ready.session.store.seconds(),
+            "search": started.elapsed().as_secs_f64(),
+        }),
+        threads: rayon::current_num_threads(),
+    };
+    let result = finding.to_json();
+    let csv = curves(&pre_image, robot)
+        .to_csv()
+        .map_err(anyhow::Error::from)?;
+    let out = &options.out;
+    report::write_text(&out.join("manifolds.csv"), &csv).map_err(anyhow::Error::from)?;
+    report::write_json(&out.join("result.json"), &result).map_err(anyhow::Error::from)?;
+    ready.session.store.remove();
+    Ok(result)
+}
+
+fn settings(search: &ManifoldSearch) -> SearchSettings {
+    let mut settings = SearchSettings::default();
+    settings.least_seeds = search.seeds as usize;
+    settings.most_seeds = settings.most_seeds.max(settings.least_seeds);
+    settings.unreachable_after = settings.unreachable_after.max(settings.least_seeds);
+    if search.residual < ONE_STEP {
+        settings.trace.polish += 1;
+    }
+    settings
+}
+
+/// The pose of the tool in the world frame.
+fn tool(pose: &Pose) -> Isometry3<f64> {
+    let coordinate = |k: usize| pose.position.get(k).copied().unwrap_or(0.0);
+    let rotation = match (&pose.rotation, pose.phi_deg) {
+        (Some(rows), _) => {
+            let matrix = Matrix3::from_fn(|r, c| rows[r][c]);
+            // The rows are orthonormal to 1e-6 only; the unit quaternion is so to round-off.
+            UnitQuaternion::from_rotation_matrix(&Rotation3::from_matrix_unchecked(matrix))
+        }
+        (None, Some(phi)) => UnitQuaternion::from_axis_angle(&Vector3::z_axis(), phi.to_radians()),
+        (None, None) => UnitQuaternion::identity(),
+    };
+    let position = Translation3::new(coordinate(0), coordinate(1), coordinate(2));
+    Isometry3::from_parts(position, rotation)
+}
+
+/// Physical limits as arcs of internal joint variables.
+fn physical(robot: &Robot) -> Vec<Arc> {
+    let arc = |joint: usize| match (robot.joint_kind(joint), &robot.physical_limits) {
+        (JointKind::Prismatic, _) => Arc::from_interval(-FRAC_PI_2, FRAC_PI_2),
+        (JointKind::Revolute, Some(limits)) => {
+            let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
+            match upper - lower >= TAU - 1e-9 {
+                true => Arc::FULL,
+                false => Arc::from_interval(lower, upper),
+            }
+        }
+        (JointKind::Revolute, None) => Arc::FULL,
+    };
+    (0..robot.joints()).map(arc).collect()
+}
+
+/// Largest distance of a vertex' pose from the wanted one: metres, and radians of orientation.
+fn residual(
+    search: &PreImageSearch,
+    pre_image: &PreImage,
+    pose: &Isometry3<f64>,
+    study: &Study,
+) -> [f64; 2] {
+    let mut worst = [0.0f64; 2];
+    for manifold in &pre_image.manifolds {
+        for index in 0..manifold.vertices() {
+            let tool = search.chain().tool(manifold.point(index));
+            let mut off = tool.translation.vector - pose.translation.vector;
+            if study.task.is_planar() {
+                off.z = 0.0;
+            }
+            worst[0] = worst[0].max(off.norm());
+            worst[1] = worst[1].max(tool.rotation.angle_to(&pose.rotation));
+        }
+    }
+    worst
+}

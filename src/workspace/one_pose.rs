@@ -1,0 +1,204 @@
+//! Whether one pose is fault tolerant, from its whole pre-image [S4 §III.C].
+//!
+//! The same sets as in the estimates of sizes, for a single pre-image at full accuracy: with M the
+//! pre-image inside the physical limits, Θ_i its joint ranges and T the θ₁-image of its part inside
+//! A₂ × … × A_n, a pose turned by β about joint 1 is reached before a failure if β ∈ A₁ − T, after
+//! a lock of joint 1 if A₁ − β ⊂ Θ₁, and after a lock of joint i ≥ 2 if A_i ⊂ Θ_i.
+
+use super::{ArtificialLimits, FailureSet};
+use crate::angle::{AngleSet, Arc};
+use crate::manifold::{PreImage, SelfMotionManifold};
+
+/// Parts of a segment between which a curve is looked at. A segment is at most 0.4 rad long, so
+/// that what is overlooked inside a part is below 1e-5 rad.
+const PARTS: usize = 64;
+
+/// Halvings that locate where a curve leaves a box, far below a part's length.
+const HALVINGS: usize = 40;
+
+/// Which failures a pose survives.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PoseTolerance {
+    /// Rotations β about joint 1 after which the pose is reached inside the limits.
+    pub before_failure: AngleSet,
+    /// Rotations β after which the pose is reached wherever joint 1 locks inside its limits.
+    pub after_lock_of_1: AngleSet,
+    /// Whether the pose is reached wherever each joint locks inside its limits, joint 1 first;
+    /// that of joint 1 without a rotation.
+    pub survives: Vec<bool>,
+    /// Rotations β after which the pose belongs to the fault-tolerant workspace.
+    pub rotation_set: AngleSet,
+}
+
+impl PoseTolerance {
+    /// Judges the pose with the given pre-image. `physical` holds the physical limits of every
+    /// joint as arcs of internal joint variables; those of joint 1 are not used.
+    pub fn of(
+        pre_image: &PreImage,
+        physical: &[Arc],
+        limits: &ArtificialLimits,
+        failures: &FailureSet,
+    ) -> PoseTolerance {
+        let arcs: Vec<Arc> = limits.joints().iter().map(|limit| limit.arc()).collect();
+        let ranges = ranges_within(&pre_image.manifolds, physical);
+        let both: Vec<[Arc; 2]> = arcs.iter().zip(physical).map(|(a, p)| [*a, *p]).collect();
+        let inside = images(&pre_image.manifolds, &both);
+        let before_failure = inside[0].mirrored().sum(&arcs[0]);
+        let after_lock_of_1 = ranges[0].erosion(&arcs[0]).mirrored();
+        let mut survives: Vec<bool> = ranges
+            .iter()
+            .zip(&arcs)
+            .map(|(range, arc)| range.contains_arc(arc))
+            .collect();
+        survives[0] = after_lock_of_1.contains(0.0);
+        let rest = (1..survives.len()).all(|k| survives[k] || !failures.contains(k + 1));
+        let rotation_set = match (rest, failures.contains(1)) {
+            (false, _) => AngleSet::empty(),
+            (true, true) => before_failure.intersection(&after_lock_of_1),
+            (true, false) => before_failure.clone(),
+        };
+        PoseTolerance {
+            before_failure,
+            after_lock_of_1,
+            survives,
+            rotation_set,
+        }
+    }
+}
+
+/// Whether all joints from 2 on lie in all their arcs.
+fn is_inside<const K: usize>(theta: &[f64], arcs: &[[Arc; K]]) -> bool {
+    let joints = theta.iter().zip(arcs).skip(1);
+    joints
+        .flat_map(|(angle, arcs)| arcs.iter().map(move |arc| (angle, arc)))
+        .all(|(angle, arc)| arc.contains(*angle))
+}
+
+/// Θ: the angles of every joint over the parts of `manifolds` inside the physical limits of the
+/// joints from 2 on, given as arcs of internal joint variables, one per joint.
+pub fn ranges_within(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<AngleSet> {
+    let bounds: Vec<[Arc; 1]> = physical.iter().map(|arc| [*arc]).collect();
+    images(manifolds, &bounds)
+}
+
+/// The angles of every joint over the parts of `manifolds` at which the joints from 2 on lie in
+/// all their arcs.
+fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]]) -> Vec<AngleSet> {
+    let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); bounds.len()];
+    for manifold in manifolds {
+        for run in runs(manifold, &|theta: &[f64]| is_inside(theta, bounds)) {
+            for (arcs, [low, high]) in arcs.iter_mut().zip(run) {
+                arcs.push(Arc::from_interval(low, high));
+            }
+        }
+    }
+    arcs.into_iter().map(AngleSet::from_arcs).collect()
+}
+
+/// Least and greatest variable of every joint.
+type Run = Vec<[f64; 2]>;
+
+/// The connected parts of a curve at which `is_inside` holds, each with the interval of every
+/// joint's unwrapped variable.
+fn runs(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) -> bool) -> Vec<Run> {
+    let mut runs: Vec<Run> = Vec::new();
+    let first = manifold.point(0);
+    let mut was_inside = is_inside(first);
+    if was_inside {
+        runs.push(start(first));
+    }
+    for index in 0..manifold.vertices().saturating_sub(1) {
+        for part in 1..=PARTS {
+            let [from, to] = [part - 1, part].map(|k| k as f64 / PARTS as f64);
+            let next = manifold.at(index, to);
+            let now = is_inside(&next);
+            if now != was_inside {
+                let edge = crossing(manifold, index, [from, to], was_inside, is_inside);
+                match was_inside {
+                    true => widen(&mut runs, &edge),
+                    false => runs.push(start(&edge)),
+                }
+            }
+            if now {
+                widen(&mut runs, &next);
+            }
+            was_inside = now;
+        }
+    }
+    runs
+}
+
+fn start(theta: &[f64]) -> Run {
+    theta.iter().map(|&value| [value, value]).collect()
+}
+
+fn widen(runs: &mut [Run], theta: &[f64]) {
+    let run = runs.last_mut().into_iter().flatten();
+    for (interval, &value) in run.zip(theta) {
+        *interval = [interval[0].min(value), interval[1].max(value)];
+    }
+}
+
+/// The last configuration inside, between two parameters of a segment of which one is inside.
+fn crossing(
+    manifold: &SelfMotionManifold,
+    index: usize,
+    ends: [f64; 2],
+    first_is_inside: bool,
+    is_inside: &impl Fn(&[f64]) -> bool,
+) -> Vec<f64> {
+    let [mut inside, mut outside] = match first_is_inside {
+        true => ends,
+        false => [ends[1], ends[0]],
+    };
+    for _ in 0..HALVINGS {
+        let middle = 0.5 * (inside + outside);
+        match is_inside(&manifold.at(index, middle)) {
+            true => inside = middle,
+            false => outside = middle,
+        }
+    }
+    manifold.at(index, inside)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::design::{Geometry, Robot, TaskSpace};
+    use crate::manifold::{PreImageSearch, SearchSettings};
+    use crate::workspace::planar::{PlanarArm, PlanarPosition};
+    use nalgebra::Isometry3;
+
+    /// Rotation sets of planar positions are known in closed form.
+    #[test]
+    fn agrees_with_the_closed_form_in_the_plane() {
+        let lengths = vec![1.0; 3];
+        let robot = Robot {
+            name: "r".into(),
+            source: None,
+            geometry: Geometry::Planar {
+                lengths: lengths.clone(),
+            },
+            physical_limits: None,
+            tool: Isometry3::identity(),
+        };
+        let settings = SearchSettings::default();
+        let mut search = PreImageSearch::new(&robot, TaskSpace::PlanarPosition, settings).unwrap();
+        let limits = [[-18.21, 18.21], [-111.322, 111.322], [-111.322, 111.322]];
+        let limits = ArtificialLimits::from_degrees(&limits);
+        let failures = FailureSet::any(3);
+        for (k, r) in [0.3, 0.9, 1.0, 1.2, 1.5, 2.9].into_iter().enumerate() {
+            let mut generator = crate::sampling::stream(1, k as u64);
+            let pre_image = search.find(&Isometry3::translation(r, 0.0, 0.0), &mut generator);
+            let found = PoseTolerance::of(&pre_image, &[Arc::FULL; 3], &limits, &failures);
+            let arm = PlanarArm {
+                lengths: &lengths,
+                limits: &limits,
+                failures: &failures,
+            };
+            let exact = PlanarPosition::new().rotation_set(arm, r);
+            let (a, b) = (found.rotation_set.measure(), exact.measure());
+            assert!((a - b).abs() < 1e-4, "r = {r}: {a} for {b}");
+        }
+    }
+}
