@@ -277,6 +277,16 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
         "of one core",
     ];
     assert_refused(&place, &["--no-cache"], &parts);
+    let head = POSITION
+        .replace("position", "pose")
+        .replace("111.322]", "111.322, 180]");
+    let grid = "sampling = \"grid\"\norientations = 90000000";
+    let place = Place::new("[1.0, 1.0, 1.0, 1.0]", &head, grid);
+    assert_refused(
+        &place,
+        &["--no-cache"],
+        &["too many samples", "`orientations`"],
+    );
     let place = Place::new(R3, POSITION, "samples = 4096");
     let parts = ["cache folder cannot be written to", "--no-cache"];
     assert_refused(&place, &["--cache", "arm.toml/x"], &parts);

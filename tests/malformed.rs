@@ -19,7 +19,7 @@ const ROBOTS: [&str; 3] = [
      [physical_limits]\nlower_deg = [-170.0]\nupper_deg = [170.0]\nlower = [0]\nupper = [0.5]\n",
 ];
 
-const STUDIES: [&str; 2] = [
+const STUDIES: [&str; 5] = [
     "kind = \"estimate\"\ntitle = \"Título\"\ndesign = \"arm.toml\"\nseed = 7\n[task]\n\
      space = \"planar-position\"\nfailures = [1, 3]\n[limits]\nlower_deg = [-18, -111, -111]\n\
      upper_deg = [18.0, 111, 249]\n[estimator]\nmethod = \"exact\"\ntolerance = 1e-3\n\
@@ -30,6 +30,16 @@ const STUDIES: [&str; 2] = [
      [optimiser.coordinate-ascent]\nrestarts = 32\nline_samples = 24\nmax_sweeps = 100\n\
      tolerance = 1e-9\n[optimiser.genetic]\npopulation = 100\ngenerations = 200\nelite = 2\n\
      tournament = 3\ncrossover_rate = 0.9\nmutation_rate = 0.3\npatience = 50\npolish = true\n",
+    "kind = \"estimate\"\ndesign = \"arm.toml\"\n[task]\nspace = \"planar-position\"\n[limits]\n\
+     lower_deg = [-18, -111, -111]\nupper_deg = [18.0, 111, 249]\n[estimator]\n\
+     method = \"hybrid\"\n[estimator.hybrid]\nsampling = \"lattice\"\nsamples = 1000\n\
+     replicates = 8\ntolerance_rad = 0.02\nmemory_limit_mb = 100\nrule = \"paper\"\n",
+    "kind = \"optimise\"\ndesign = \"arm.toml\"\n[task]\nspace = \"planar-position\"\n\
+     [estimator]\nmethod = \"hybrid\"\n[estimator.hybrid]\nsampling = \"grid\"\ncell = 0.05\n\
+     orientations = 1\ncentres = true\n",
+    "kind = \"manifolds\"\ndesign = \"arm.toml\"\n[task]\nspace = \"planar-position\"\n[pose]\n\
+     position = [1.0, 0.5]\n[limits]\nlower_deg = [-18, -111, -111]\n\
+     upper_deg = [18.0, 111, 249]\n[manifolds]\nseeds = 64\nresidual = 1e-9\n",
 ];
 
 /// Numbers, and things in place of numbers, that readers stumble over.

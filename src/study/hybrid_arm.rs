@@ -1,6 +1,7 @@
 //! The robot of a study as the hybrid estimator sees it: samples, atlases, limits.
 
 use super::hybrid_settings::Hybrid;
+use super::hybrid_table::MOST_SAMPLES;
 use super::run::{Progress, RunError};
 use super::settings::{Question, Study};
 use crate::design::{Robot, TaskSpace};
@@ -57,6 +58,7 @@ impl Needed {
                 Samples::Independent => study.seed.wrapping_add(INDEPENDENT),
             },
         };
+        check_count(study, &plan)?;
         let recipe = AtlasRecipe::new(&study.design.robot, plan, hybrid.atlas_settings())
             .map_err(anyhow::Error::from)?;
         let degree = study.design.robot.degree_of_redundancy(study.task);
@@ -156,6 +158,26 @@ fn unwritable(cache: &Path, cause: &std::io::Error) -> InputError {
     InputError::in_file(&cache.display().to_string(), problem)
 }
 
+/// A grid's cells are known only with the robot's reach; a lattice never has more.
+fn check_count(study: &Study, plan: &SamplePlan) -> Result<(), InputError> {
+    let samples = plan.len();
+    if samples <= MOST_SAMPLES {
+        return Ok(());
+    }
+    let problem = Problem {
+        message: "there are too many samples".into(),
+        found: format!("{samples}"),
+        expected: format!("at most {MOST_SAMPLES}"),
+        help: "in `[estimator.hybrid]`, take a larger `cell` or fewer `orientations`".into(),
+    };
+    Err(InputError::in_file(&file_of(study), problem))
+}
+
+/// The study file as a message names it.
+pub(super) fn file_of(study: &Study) -> String {
+    format!("{}.toml", study.name)
+}
+
 fn too_large(study: &Study, error: &AtlasError, prediction: &Prediction) -> InputError {
     let seconds = prediction.core_seconds;
     let time = match seconds {
@@ -185,7 +207,7 @@ fn too_large(study: &Study, error: &AtlasError, prediction: &Prediction) -> Inpu
                `orientations`), raise `tolerance_rad`, or raise `memory_limit_mb`"
             .into(),
     };
-    InputError::in_file(&format!("{}.toml", study.name), problem)
+    InputError::in_file(&file_of(study), problem)
 }
 
 /// Where the robot's workspace lies in the frame of joint 1.

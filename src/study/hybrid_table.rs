@@ -22,7 +22,7 @@ const KEYS: &[&str] = &[
 ];
 
 /// Most samples in all; an atlas of more fits no memory.
-const MOST_SAMPLES: u64 = 100_000_000;
+pub(super) const MOST_SAMPLES: u64 = 100_000_000;
 
 /// Samples of a replicate at least, so that its estimate means something.
 const LEAST_OF_REPLICATE: u64 = 16;

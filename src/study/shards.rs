@@ -1,6 +1,6 @@
 //! The atlases of a study in parts: built on several machines, brought together by a merge.
 
-use super::hybrid_arm::{Needed, check_cache, run_error};
+use super::hybrid_arm::{Needed, check_cache, file_of, run_error};
 use super::hybrid_settings::Hybrid;
 use super::run::{Progress, RunError, RunOptions, pool};
 use super::settings::{Estimator, Question, Study};
@@ -125,10 +125,7 @@ fn hybrid_of(study: &Study) -> Result<&Hybrid, InputError> {
                 expected: "an estimate or an optimisation with the estimator \"hybrid\"".into(),
                 help: "run it as a whole, without `--shard`".into(),
             };
-            Err(InputError::in_file(
-                &format!("{}.toml", study.name),
-                problem,
-            ))
+            Err(InputError::in_file(&file_of(study), problem))
         }
     }
 }
@@ -140,7 +137,7 @@ fn no_cache(study: &Study) -> InputError {
         expected: "a folder for the shards".into(),
         help: "give one with `--cache DIR`".into(),
     };
-    InputError::in_file(&format!("{}.toml", study.name), problem)
+    InputError::in_file(&file_of(study), problem)
 }
 
 fn no_folder(path: &Path) -> InputError {
