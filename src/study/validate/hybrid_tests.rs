@@ -48,7 +48,7 @@ fn what_exact_cannot_serve_is_refused_by_name() {
             "use `method = \"hybrid\"`",
         ),
         (limited, "planar-position", "use `method = \"hybrid\"`"),
-        (arm(6), "planar-pose", "cannot either"),
+        (arm(7), "planar-pose", "cannot either"),
         (rows(&[BENT; 3]), "planar-position", "cannot either"),
     ];
     for (robot, task, hint) in cases {
@@ -90,17 +90,18 @@ fn what_hybrid_cannot_serve_is_refused_by_name() {
     );
     let cases = [
         (
-            rows(&[BENT; 8]),
+            rows(&[BENT; 10]),
             "spatial-pose",
             "task.space",
-            "degree of redundancy of 2",
+            "degree of redundancy of 4",
         ),
         (arm(5), "planar-pose", "", ""),
+        (arm(6), "planar-pose", "", ""),
         (
-            arm(6),
+            arm(7),
             "planar-pose",
             "task.space",
-            "degree of redundancy of 3",
+            "degree of redundancy of 4",
         ),
         (arm(4), "spatial-position", "design", "moves in a plane"),
         (
@@ -116,12 +117,7 @@ fn what_hybrid_cannot_serve_is_refused_by_name() {
             "joint 3 of `r`, which slides",
         ),
         (first, "spatial-position", "design", "joint 1 is prismatic"),
-        (
-            limited,
-            "planar-position",
-            "design",
-            "physical limits of joint 1",
-        ),
+        (limited, "planar-position", "", ""),
     ];
     for (robot, task, key, found) in cases {
         let Err(error) = parse(&robot, &format!("'{task}'")) else {

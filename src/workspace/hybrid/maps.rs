@@ -15,8 +15,9 @@ use std::f64::consts::{PI, TAU};
 /// Cells around the circle.
 const AZIMUTHS: usize = 72;
 
-/// Samples that a cell of a lattice's map should have.
-const PER_CELL: f64 = 40.0;
+/// Samples that a cell of a lattice's map should have in the mean, and near the axis at least.
+const PER_CELL: f64 = 80.0;
+const LEAST_PER_CELL: f64 = 40.0;
 
 /// Most cells along one side of a map.
 const MOST_CELLS: f64 = 60.0;
@@ -25,6 +26,12 @@ const MOST_CELLS: f64 = 60.0;
 struct Spot {
     sample: u64,
     set: AngleSet,
+}
+
+/// Edges of cells in the half-plane, metres.
+struct Layout {
+    radii: Vec<f64>,
+    heights: Vec<f64>,
 }
 
 /// Counts over a grid of cells in the half-plane.
@@ -40,64 +47,75 @@ struct Cells {
 impl Atlas {
     /// The workspace of a spatial task.
     pub fn share_map(&self, limits: &ArtificialLimits, failures: &FailureSet) -> SpatialShareMap {
-        let plan = self.plan();
-        let region = &plan.region;
-        let [columns, rows] = self.map_cells();
-        let cells = self.count([columns, rows], AZIMUTHS, limits, failures);
-        let (width, height) = match plan.sampling {
-            Sampling::Grid { .. } => (plan.cell_side(), plan.cell_side()),
-            Sampling::Lattice { .. } => (
-                region.radius / columns as f64,
-                (region.upper - region.lower) / rows as f64,
-            ),
-        };
-        let edge = |first: f64, step: f64, count: usize| -> Vec<f64> {
-            (0..=count).map(|k| first + k as f64 * step).collect()
-        };
+        let layout = self.layout();
+        let cells = self.count(&layout, AZIMUTHS, limits, failures);
         SpatialShareMap {
-            radius_edges: edge(0.0, width, columns),
-            height_edges: edge(region.lower, height, rows),
             azimuths: AZIMUTHS,
             share: cells.shares(),
             unrestricted: cells.reachable_shares(),
-            orientations: plan.task == TaskSpace::SpatialPose,
+            orientations: self.plan().task == TaskSpace::SpatialPose,
+            radius_edges: layout.radii,
+            height_edges: layout.heights,
         }
     }
 
     /// The workspace of a planar task.
     pub fn planar_map(&self, limits: &ArtificialLimits, failures: &FailureSet) -> WorkspaceMap {
-        let region = &self.plan().region;
-        let [columns, _] = self.map_cells();
         if self.plan().task == TaskSpace::PlanarPosition {
             return WorkspaceMap::Rings(self.ring_map(limits, failures));
         }
         let azimuths = 360;
-        let cells = self.count([columns, 1], azimuths, limits, failures);
-        let step = region.radius / columns as f64;
-        let reached = |column: &usize| cells.reachable[*column] > 0.0;
-        let first = (0..columns).find(reached).unwrap_or(0);
+        let layout = self.layout();
+        let cells = self.count(&layout, azimuths, limits, failures);
+        let first = cells.reachable.iter().position(|&count| count > 0.0);
         WorkspaceMap::Shares(ShareMap {
-            unrestricted: [first as f64 * step, region.radius],
-            radius_edges: (0..=columns).map(|k| k as f64 * step).collect(),
+            unrestricted: [layout.radii[first.unwrap_or(0)], self.plan().region.radius],
             angles: azimuths,
             share: cells.shares().into_iter().map(f64::from).collect(),
+            radius_edges: layout.radii,
         })
     }
 
-    /// Columns and rows of the map: those of the grid, or as many as the samples fill.
-    fn map_cells(&self) -> [usize; 2] {
+    /// The cells of the map: those of the grid, or as many as the samples fill.
+    fn layout(&self) -> Layout {
         let plan = self.plan();
+        let region = &plan.region;
+        let even = |first: f64, step: f64, count: usize| -> Vec<f64> {
+            (0..=count).map(|k| first + k as f64 * step).collect()
+        };
         if let Sampling::Grid { .. } = plan.sampling {
-            return plan.cells();
+            let ([columns, rows], side) = (plan.cells(), plan.cell_side());
+            return Layout {
+                radii: even(0.0, side, columns),
+                heights: even(region.lower, side, rows),
+            };
         }
         let cells = plan.len() as f64 / PER_CELL;
-        if plan.task.is_planar() {
-            return [cells.clamp(8.0, 2.0 * MOST_CELLS) as usize, 1];
+        let height = region.upper - region.lower;
+        let (columns, rows) = if plan.task.is_planar() {
+            (cells.clamp(8.0, 2.0 * MOST_CELLS), 1.0)
+        } else {
+            let aspect = height / region.radius;
+            let columns = (cells / aspect).sqrt().clamp(4.0, MOST_CELLS);
+            (columns, (columns * aspect).clamp(4.0, 2.0 * MOST_CELLS))
+        };
+        // Samples are uniform in the square of the radius, so cells near the axis must be wider.
+        let step = region.radius / columns.round();
+        let least = LEAST_PER_CELL * rows.round() / plan.len() as f64;
+        let mut radii = vec![0.0f64];
+        while let Some(&inner) = radii.last()
+            && inner < region.radius * (1.0 - 1e-9)
+        {
+            let wide = (inner * inner + least * region.radius * region.radius).sqrt();
+            let outer = (inner + step).max(wide).min(region.radius);
+            // No sliver at the rim.
+            let rest = region.radius - outer;
+            radii.push(if rest < 0.5 * step { region.radius } else { outer });
         }
-        let aspect = (plan.region.upper - plan.region.lower) / plan.region.radius;
-        let columns = (cells / aspect).sqrt().clamp(4.0, MOST_CELLS);
-        let rows = (columns * aspect).clamp(4.0, 2.0 * MOST_CELLS);
-        [columns.round() as usize, rows.round() as usize]
+        Layout {
+            radii,
+            heights: even(region.lower, height / rows.round(), rows.round() as usize),
+        }
     }
 
     /// Rotation sets of all reachable samples, in order.
@@ -112,28 +130,23 @@ impl Atlas {
 
     fn count(
         &self,
-        [columns, rows]: [usize; 2],
+        layout: &Layout,
         azimuths: usize,
         limits: &ArtificialLimits,
         failures: &FailureSet,
     ) -> Cells {
         let plan = self.plan();
-        let region = &plan.region;
+        let [columns, rows] = [&layout.radii, &layout.heights].map(|edges| edges.len() - 1);
         let cell_of = |index: u64| {
             if let Sampling::Grid { .. } = plan.sampling {
                 return plan.sample(index).stratum as usize;
             }
             let place = plan.sample(index).tool.translation;
-            let share = |value: f64, size: f64, count: usize| {
-                ((value / size * count as f64) as usize).min(count - 1)
+            let find = |edges: &[f64], value: f64| {
+                let above = edges.partition_point(|&edge| edge <= value);
+                above.clamp(1, edges.len() - 1) - 1
             };
-            let column = share(place.x, region.radius, columns);
-            let height = region.upper - region.lower;
-            let row = match rows {
-                1 => 0,
-                _ => share(place.z - region.lower, height, rows),
-            };
-            row * columns + column
+            find(&layout.heights, place.z) * columns + find(&layout.radii, place.x)
         };
         let places: Vec<usize> = (0..plan.len()).into_par_iter().map(cell_of).collect();
         let mut cells = Cells {
