@@ -23,11 +23,9 @@ pub(super) struct Found {
     pub evaluations: u64,
 }
 
-/// Points of a pass over a line whose scores come all at once.
-const PASS: usize = 121;
-
-/// Passes over a line: the first over all of it, each further one around the best.
-const PASSES: usize = 3;
+/// Points of each pass over a line whose scores come all at once: first over all of it, then
+/// around the best.
+const PASSES: [usize; 3] = [73, 25, 25];
 
 /// Golden-section refinements after a scan: the bracket shrinks by 0.618 each.
 const REFINEMENTS: usize = 8;
@@ -89,11 +87,13 @@ impl Line<'_> {
             evaluations: 0,
         };
         let mut range = self.range;
-        for _ in 0..PASSES {
-            let spacing = (range[1] - range[0]) / (PASS - 1) as f64;
-            let ts: Vec<f64> = (0..PASS).map(|k| range[0] + k as f64 * spacing).collect();
+        for points in PASSES {
+            let spacing = (range[1] - range[0]) / (points - 1) as f64;
+            let ts: Vec<f64> = (0..points)
+                .map(|k| range[0] + k as f64 * spacing)
+                .collect();
             let scores = self.objective.scores_along(self.x, self.direction, &ts)?;
-            best.evaluations += PASS as u64;
+            best.evaluations += points as u64;
             for (&t, &score) in ts.iter().zip(&scores) {
                 best.offer(t, score);
             }

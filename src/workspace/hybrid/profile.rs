@@ -211,7 +211,16 @@ fn first_joint(view: &BlockView, fixed: &Limits16, widths: &[f64]) -> Vec<f64> {
             continue;
         }
         let after = fixed.prone[0].then(|| angle_set(range));
+        // Wider limits do not fit Θ₁ any more.
+        let room = match &after {
+            None => TAU,
+            Some(set) => set.arcs().iter().map(Arc::width).fold(0.0, f64::max),
+        };
+        let image = image.mirrored();
         for (sum, &width) in sums.iter_mut().zip(widths) {
+            if width > room {
+                break;
+            }
             let limit = Arc::new(-0.5 * width, width);
             *sum += pose.weight * fixed.overlap(&limit, &image, after.as_ref());
         }
@@ -258,7 +267,9 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
                 if bin.is_empty() {
                     continue;
                 }
-                image = image.union(&AngleSet::from_arcs(bin.drain(..)));
+                // Mirrored from the start, as the difference A₁ − T wants it.
+                let mirrored = bin.drain(..).map(|arc| arc.mirrored());
+                image = image.union(&AngleSet::from_arcs(mirrored));
                 let measure = pose.weight * fixed.overlap(&fixed.first, &image, after.as_ref());
                 *step += measure - last;
                 last = measure;
@@ -298,33 +309,81 @@ fn collect(
 ) {
     let widths = &family.widths[..bins.len()];
     for piece in view.pieces(pose) {
+        let mut run = Run::default();
         rest.walk(piece, view.joints, |_, part, from, to| {
             let step = f64::from(to[0].wrapping_sub(from[0]) as i16);
             let theta = |u: f64| (f64::from(from[0]) + u * step) * STEP;
             let (a, b) = (from[family.joint], to[family.joint]);
             family.entries(a, b, part, |[u, v], [start, end]| {
-                // In the order of growing width.
-                let (u, v, low, high) = match start <= end {
-                    true => (u, v, start, end),
-                    false => (v, u, end, start),
-                };
+                // Along the curve; widths may rise or fall.
                 let at = |width: f64| {
-                    let share = ((width - low) / (high - low).max(1e-6)).clamp(0.0, 1.0);
-                    theta(u + share * (v - u))
+                    let share = (width - start) / (end - start);
+                    theta(u + share.clamp(0.0, 1.0) * (v - u))
                 };
-                let mut bin = widths.partition_point(|&width| (width as f64) < low);
+                let bin_of = |width: f64| widths.partition_point(|&w| f64::from(w) < width);
+                let (mut bin, last) = (bin_of(start), bin_of(end));
                 let mut begin = theta(u);
-                while bin < bins.len() {
-                    let stop = at(widths[bin] as f64);
-                    bins[bin].push(Arc::from_interval(begin.min(stop), begin.max(stop)));
-                    if widths[bin] as f64 >= high {
-                        break;
-                    }
-                    begin = stop;
-                    bin += 1;
+                while bin < last {
+                    let stop = at(widths.get(bin).copied().map_or(end, f64::from));
+                    run.extend(bin, begin, stop, bins);
+                    (begin, bin) = (stop, bin + 1);
                 }
+                while bin > last {
+                    let stop = at(f64::from(widths[bin - 1]));
+                    run.extend(bin, begin, stop, bins);
+                    (begin, bin) = (stop, bin - 1);
+                }
+                run.extend(bin, begin, theta(v), bins);
             });
         });
+        run.finish(bins);
+    }
+}
+
+/// A connected part of a curve that enters the box at one width.
+#[derive(Clone, Copy, Debug)]
+struct Run {
+    bin: usize,
+    low: f64,
+    high: f64,
+    end: f64,
+}
+
+impl Default for Run {
+    fn default() -> Run {
+        Run {
+            bin: usize::MAX,
+            low: 0.0,
+            high: 0.0,
+            end: f64::NAN,
+        }
+    }
+}
+
+impl Run {
+    /// Appends the way from `begin` to `end`, radians modulo turns, which enters with `bin`.
+    fn extend(&mut self, bin: usize, begin: f64, end: f64, bins: &mut [Vec<Arc>]) {
+        let shift = ((self.end - begin) / TAU).round() * TAU;
+        let joins = bin == self.bin && (begin + shift - self.end).abs() < 1e-9;
+        if !joins {
+            self.finish(bins);
+            *self = Run {
+                bin,
+                low: begin.min(end),
+                high: begin.max(end),
+                end,
+            };
+            return;
+        }
+        self.end = end + shift;
+        self.low = self.low.min(self.end);
+        self.high = self.high.max(self.end);
+    }
+
+    fn finish(&self, bins: &mut [Vec<Arc>]) {
+        if let Some(arcs) = bins.get_mut(self.bin) {
+            arcs.push(Arc::from_interval(self.low, self.high));
+        }
     }
 }
 
@@ -342,9 +401,9 @@ impl Limits16 {
         })
     }
 
-    /// |B₀ ∩ B₁| for A₁ = `limit`, the image T and the range Θ₁ (if joint 1 may lock).
-    fn overlap(&self, limit: &Arc, image: &AngleSet, range: Option<&AngleSet>) -> f64 {
-        let before = image.mirrored().sum(limit);
+    /// |B₀ ∩ B₁| for A₁ = `limit`, the mirrored image −T and the range Θ₁ (if joint 1 may lock).
+    fn overlap(&self, limit: &Arc, mirrored: &AngleSet, range: Option<&AngleSet>) -> f64 {
+        let before = mirrored.sum(limit);
         match range {
             Some(range) => before.overlap(&range.erosion(limit).mirrored()),
             None => before.measure(),
