@@ -10,7 +10,8 @@ pub struct Hybrid {
     /// Which task points are taken.
     #[serde(flatten)]
     pub sampling: HybridSampling,
-    /// Largest distance between a stored polyline and its curve, radians, default 0.01.
+    /// Largest distance between a stored polyline and its curve, radians, default 0.01 for spatial
+    /// poses, else 0.001.
     pub tolerance_rad: f64,
     /// Size above which an atlas is not built, megabytes, default 4096.
     pub memory_limit_mb: u64,
@@ -52,7 +53,7 @@ impl Hybrid {
                 samples: default_samples(task),
                 replicates: DEFAULT_REPLICATES,
             },
-            tolerance_rad: settings.tolerance,
+            tolerance_rad: default_tolerance(task),
             memory_limit_mb: settings.memory_limit >> 20,
             slices: settings.slices as u64,
             rule: Rule::default(),
@@ -105,6 +106,15 @@ pub(super) fn default_samples(task: TaskSpace) -> u32 {
     match task {
         TaskSpace::SpatialPose => 100_000,
         _ => 20_000,
+    }
+}
+
+/// Distance between stored polylines and their curves if the study names none, radians. Memory is
+/// scarce for spatial poses alone, and there sampling errors are larger.
+pub(super) fn default_tolerance(task: TaskSpace) -> f64 {
+    match task {
+        TaskSpace::SpatialPose => 0.01,
+        _ => 0.001,
     }
 }
 
