@@ -89,9 +89,7 @@ impl Line<'_> {
         let mut range = self.range;
         for points in PASSES {
             let spacing = (range[1] - range[0]) / (points - 1) as f64;
-            let ts: Vec<f64> = (0..points)
-                .map(|k| range[0] + k as f64 * spacing)
-                .collect();
+            let ts: Vec<f64> = (0..points).map(|k| range[0] + k as f64 * spacing).collect();
             let scores = self.objective.scores_along(self.x, self.direction, &ts)?;
             best.evaluations += points as u64;
             for (&t, &score) in ts.iter().zip(&scores) {

@@ -110,7 +110,11 @@ impl Atlas {
             let outer = (inner + step).max(wide).min(region.radius);
             // No sliver at the rim.
             let rest = region.radius - outer;
-            radii.push(if rest < 0.5 * step { region.radius } else { outer });
+            radii.push(if rest < 0.5 * step {
+                region.radius
+            } else {
+                outer
+            });
         }
         Layout {
             radii,
