@@ -341,11 +341,62 @@ fn manifolds_of_a_spatial_pose() {
         let (curve, length) = (cells.next()?.parse::<usize>().ok()?, cells.nth(1)?);
         Some((curve, length.parse::<f64>().ok()?))
     });
+    assert_is_a_report(&place, &result);
     let mut lengths = [0.0; 3];
     ends.for_each(|(curve, length)| lengths[curve] = length);
     for (length, manifold) in lengths[1..].iter().zip(manifolds) {
         assert!((length / number(&manifold["length"]) - 1.0).abs() < 1e-5);
     }
+}
+
+/// Figures, page and polylines of a study of one pose with limits.
+fn assert_is_a_report(place: &Place, result: &Value) {
+    for stem in ["manifolds", "manifolds_3d"] {
+        let png = fs::read(place.path(&format!("out/{stem}.png"))).unwrap();
+        assert!(png.starts_with(b"\x89PNG"));
+        let svg = fs::read_to_string(place.path(&format!("out/{stem}.svg"))).unwrap();
+        assert!(svg.contains("crosses limit box"));
+    }
+    let page = fs::read_to_string(place.path("out/report.html")).unwrap();
+    for part in [
+        "2 self-motion manifolds",
+        "supported by evidence",
+        "is in the fault-tolerant",
+        "curves.vtk",
+    ] {
+        assert!(page.contains(part), "{part}");
+    }
+    assert!(
+        !page.contains("src=\"manifolds"),
+        "the page needs no other file"
+    );
+    let vtk = fs::read_to_string(place.path("out/curves.vtk")).unwrap();
+    assert!(vtk.starts_with("# vtk DataFile"));
+    // Every crossing of the table is one of result.json, at a limit of some joint from 2 on.
+    let table = fs::read_to_string(place.path("out/manifolds_3d.csv")).unwrap();
+    let drawn = table
+        .lines()
+        .filter(|line| line.starts_with("crossing,"))
+        .count();
+    let mut crossings = 0;
+    for point in result["manifolds"]
+        .as_array()
+        .unwrap()
+        .iter()
+        .flat_map(|m| m["limit_crossings"].as_array().unwrap())
+    {
+        let theta = point["theta_deg"].as_array().unwrap();
+        let gap = |k: usize, side: &str| {
+            let off = number(&theta[k]) - number(&result["limits_deg"][side][k]);
+            (off + 180.0).rem_euclid(360.0) - 180.0
+        };
+        let limited = [3, 4, 5]
+            .into_iter()
+            .flat_map(|k| [gap(k, "lower"), gap(k, "upper")]);
+        assert!(limited.map(f64::abs).fold(f64::INFINITY, f64::min) < 1e-6);
+        crossings += 1;
+    }
+    assert_eq!((drawn, crossings), (12, 12));
 }
 
 /// Joint 2 of a planar arm holds the point at distance r with the two links around it between

@@ -81,7 +81,7 @@ fn pose(result: &Value, text: &mut String) {
     line(
         "completeness",
         match missed {
-            Some(missed) => format!("{kind}, one more start finds another with {missed:.1e}"),
+            Some(missed) => format!("{kind}, a manifold is missing with probability {missed:.1e}"),
             None => kind.to_owned(),
         },
     );

@@ -6,6 +6,10 @@ use crate::angle::{AngleSet, Arc};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
+/// A joint that moves less than this along a whole curve stands still, radians: above the error of
+/// the cubic between vertices.
+const STILL: f64 = 1e-4;
+
 /// One connected component of the pre-image of a task point, for one degree of redundancy.
 ///
 /// A smooth curve in joint space, known by vertices and unit tangents; between vertices it is the
@@ -145,8 +149,13 @@ impl SelfMotionManifold {
         found
     }
 
-    /// All critical points of `joint` (from 0).
+    /// All critical points of `joint` (from 0); none if it stands still along the curve, like the
+    /// elbow of an arm with spherical shoulder and wrist, where every extremum is round-off.
     pub fn critical_points(&self, joint: usize) -> Vec<CriticalPoint> {
+        let [low, high] = self.span(joint);
+        if high - low < STILL {
+            return Vec::new();
+        }
         let point = |(index, u, is_maximum): (usize, f64, bool)| CriticalPoint {
             joint,
             theta: self.at(index, u),

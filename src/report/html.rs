@@ -35,39 +35,63 @@ ul.notes { background: #fff7e0; padding: .6rem 1rem .6rem 2rem; }
 
 /// The page of a report with its figures.
 pub fn page(report: &Report, figures: &[InlineFigure]) -> String {
+    let body = html! {
+        (heading(report))
+        (summary(report))
+        (notes(&report.notes))
+        h2 { "Artificial joint limits" }
+        (limits(report))
+        h2 { "Sizes" }
+        (sizes(report))
+        h2 { "Figures" }
+        div.figures { @for figure in figures { (inlined(figure)) } }
+        @if report.points.is_some() {
+            p { "The shares of all cells as points for ParaView: " code { (POINTS) } "." }
+        }
+        (sources(&report.study_toml, &report.provenance, &report.result_json))
+    };
+    document(&report.title, &body)
+}
+
+/// A whole page.
+pub(super) fn document(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
         html lang="en" {
             head {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
-                title { (report.title) }
+                title { (title) }
                 style { (PreEscaped(CSS)) }
             }
-            body {
-                (heading(report))
-                (summary(report))
-                @if !report.notes.is_empty() {
-                    ul.notes { @for note in &report.notes { li { (note) } } }
-                }
-                h2 { "Artificial joint limits" }
-                (limits(report))
-                h2 { "Sizes" }
-                (sizes(report))
-                h2 { "Figures" }
-                div.figures { @for figure in figures { (inlined(figure)) } }
-                @if report.points.is_some() {
-                    p { "The shares of all cells as points for ParaView: " code { (POINTS) } "." }
-                }
-                h2 { "Study as run" }
-                pre { (report.study_toml) }
-                h2 { "Provenance" }
-                (provenance(report))
-                details { summary { "result.json" } pre { (pretty(&report.result_json)) } }
-            }
+            body { (body) }
         }
     };
     page.into_string()
+}
+
+/// Remarks a reader must not miss.
+pub(super) fn notes(notes: &[String]) -> Markup {
+    html! {
+        @if !notes.is_empty() {
+            ul.notes { @for note in notes { li { (note) } } }
+        }
+    }
+}
+
+/// The end of every page: where the result comes from.
+pub(super) fn sources(
+    study_toml: &str,
+    rows: &[(String, String)],
+    result: &serde_json::Value,
+) -> Markup {
+    html! {
+        h2 { "Study as run" }
+        pre { (study_toml) }
+        h2 { "Provenance" }
+        (provenance(rows))
+        details { summary { "result.json" } pre { (pretty(result)) } }
+    }
 }
 
 fn heading(report: &Report) -> Markup {
@@ -106,7 +130,7 @@ fn measured(number: &str, unit: &str) -> String {
     }
 }
 
-fn symbol(letter: &str, index: &str) -> Markup {
+pub(super) fn symbol(letter: &str, index: &str) -> Markup {
     html! { i { (letter) } sub { (index) } }
 }
 
@@ -156,7 +180,7 @@ fn sizes(report: &Report) -> Markup {
     }
 }
 
-fn inlined(figure: &InlineFigure) -> Markup {
+pub(super) fn inlined(figure: &InlineFigure) -> Markup {
     let data = STANDARD.encode(&figure.png);
     html! {
         figure style=[figure.is_wide.then_some("flex-basis:100%;max-width:none")] {
@@ -166,10 +190,10 @@ fn inlined(figure: &InlineFigure) -> Markup {
     }
 }
 
-fn provenance(report: &Report) -> Markup {
+fn provenance(rows: &[(String, String)]) -> Markup {
     html! {
         div.scroll { table {
-            @for (name, value) in &report.provenance {
+            @for (name, value) in rows {
                 tr { th { (name) } td.v { (value) } }
             }
         } }

@@ -14,6 +14,9 @@ use plotters::style::text_anchor::HPos;
 /// Height of a joint's row, points.
 const ROW: f64 = 12.0;
 
+/// Half the width of the narrowest bar, points.
+const LEAST: f64 = 0.6;
+
 /// Height of all rows, points.
 pub(super) fn height(joints: usize) -> f64 {
     joints.max(1) as f64 * ROW
@@ -55,7 +58,10 @@ pub(super) fn draw(
             .draw(canvas, at);
         let place = |angle: f64| panel.at(angle, 0.0)[0];
         for [low, high] in range.arcs().iter().flat_map(parts) {
-            let corners = bar(place(low), place(high), top + 1.8, 4.6);
+            // A joint that stands still is seen all the same.
+            let middle = 0.5 * (place(low) + place(high));
+            let half = (0.5 * (place(high) - place(low))).max(LEAST);
+            let corners = bar(middle - half, middle + half, top + 1.8, 4.6);
             canvas.fill(&corners, BLUE);
             canvas.outline(&corners, 0.4, BLUE);
         }

@@ -71,7 +71,10 @@ impl Figure for ManifoldFigure<'_> {
         };
         let crossings = match self.crossings.is_empty() {
             true => "",
-            false => " Crosses: where a manifold enters or leaves the limits.",
+            false => {
+                " Crosses: where a manifold enters or leaves the box of all \
+                 limits but joint 1's."
+            }
         };
         format!(
             "Self-motion manifolds: the angle of every joint against that of joint 1, and below \
@@ -226,7 +229,7 @@ impl ManifoldFigure<'_> {
         for point in self.critical_points {
             let is_shown = point.joint == 1 || point.joint == joint + 1;
             if is_shown && is_drawable(&point.configuration, joints) {
-                dot(canvas, at(&point.configuration));
+                dot(canvas, at(&point.configuration), 1.0);
             }
         }
         for configuration in self.crossings.iter().filter(|q| is_drawable(q, joints)) {
@@ -256,7 +259,7 @@ pub(super) fn entries(curves: usize, marks: &Marks) -> Vec<(Swatch, String)> {
             ));
         }
     } else {
-        let text = format!("{curves} self-motion manifolds");
+        let text = format!("{curves} manifolds, six colours");
         entries.push((Swatch::Line(COLOURS[0]), text));
     }
     if marks.limits.is_some() {
@@ -267,7 +270,7 @@ pub(super) fn entries(curves: usize, marks: &Marks) -> Vec<(Swatch, String)> {
         entries.push((Swatch::Dot(INK), "critical point".into()));
     }
     if !marks.crossings.is_empty() {
-        entries.push((Swatch::Cross(INK), "crosses a limit".into()));
+        entries.push((Swatch::Cross(INK), "crosses limit box".into()));
     }
     entries
 }
@@ -327,10 +330,10 @@ pub(super) fn upright_grid(canvas: &mut Canvas, panel: &Panel, ticks: &[Tick]) {
     }
 }
 
-/// A critical point.
-pub(super) fn dot(canvas: &mut Canvas, at: Point) {
-    canvas.disc(at, 2.1, WHITE);
-    canvas.disc(at, 1.5, INK);
+/// A critical point, with the radius of a legend's dot times `scale`.
+pub(super) fn dot(canvas: &mut Canvas, at: Point, scale: f64) {
+    canvas.disc(at, 2.1 * scale, WHITE);
+    canvas.disc(at, 1.5 * scale, INK);
 }
 
 /// A point at which a curve enters or leaves the limits.

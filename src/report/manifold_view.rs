@@ -74,9 +74,19 @@ impl Figure for ManifoldFigure3d<'_> {
             }
             None => "",
         };
+        let critical = match self.critical_points.is_empty() {
+            true => "",
+            false => " Dots: critical points of these joints.",
+        };
+        let crossings = match self.crossings.is_empty() {
+            true => "",
+            false => {
+                " Crosses: where a manifold enters or leaves the box of all limits but joint 1's."
+            }
+        };
         format!(
             "Self-motion manifolds in the space of {a}, {b} and {c}, with their shadows on the \
-             floor.{limits}"
+             floor.{limits}{critical}{crossings}"
         )
     }
 
@@ -246,7 +256,7 @@ impl ManifoldFigure3d<'_> {
         for point in self.critical_points {
             let is_shown = self.joints.contains(&point.joint);
             if is_shown && is_drawable(&point.configuration, self.joint_count) {
-                dot(canvas, at(&point.configuration));
+                dot(canvas, at(&point.configuration), 0.75);
             }
         }
         for q in self

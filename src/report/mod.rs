@@ -5,7 +5,7 @@
 //! puts on a PNG (1600 pixels wide for one column of a paper) or an SVG, and the table behind it as CSV. Files are written
 //! whole or not at all, and the same input gives the same bytes.
 //!
-//! [`write_report`] writes everything; [`write_figure`], [`write_json`] and [`write_text`] write
+//! [`write_report`] and, for studies of one pose, [`write_manifold_report`] write everything; [`write_figure`], [`write_json`] and [`write_text`] write
 //! single files.
 
 mod arm;
@@ -24,6 +24,8 @@ mod limits_figure;
 mod link_rod;
 mod manifold;
 mod manifold_figure;
+mod manifold_page;
+mod manifold_report;
 mod manifold_view;
 mod number;
 mod outline;
@@ -64,6 +66,9 @@ pub use html::{InlineFigure, page};
 pub use limits_figure::LimitsFigure;
 pub use manifold::{CriticalPoint, ManifoldCurve};
 pub use manifold_figure::ManifoldFigure;
+pub use manifold_report::{
+    JointRow, ManifoldReport, ManifoldRow, PoseVerdict, write_manifold_report,
+};
 pub use manifold_view::ManifoldFigure3d;
 pub use number::{degrees, estimate, percentage, plain, unit, with_error};
 pub use points::{write_curves, write_points};

@@ -19,6 +19,8 @@ pub(super) struct ManifoldFinding<'a> {
     /// Physical limits as arcs of internal joint variables.
     pub physical: &'a [Arc],
     pub tolerance: Option<&'a PoseTolerance>,
+    /// Per manifold, where it enters or leaves the artificial limits; empty without limits.
+    pub crossings: &'a [Vec<Vec<f64>>],
     /// Metres, and radians of orientation.
     pub residual: [f64; 2],
     pub seconds: Value,
@@ -29,8 +31,16 @@ impl ManifoldFinding<'_> {
     pub fn to_json(&self) -> Value {
         let (study, found) = (self.study, self.pre_image);
         let joints = Joints::of(&study.design.robot);
-        let each = found.manifolds.iter();
-        let each = each.map(|m| joints.manifold(m, &self.ranges(std::slice::from_ref(m))));
+        let each = found.manifolds.iter().zip(self.crossings);
+        let each = each.map(|(manifold, crossings)| {
+            let own = self.ranges(std::slice::from_ref(manifold));
+            let mut value = joints.manifold(manifold, &own);
+            if self.manifolds.limits.is_some() {
+                let points = crossings.iter().map(|theta| joints.configuration(theta));
+                value["limit_crossings"] = points.collect();
+            }
+            value
+        });
         let manifolds: Vec<Value> = each.collect();
         let mut result = json!({
             "schema": SCHEMA,
@@ -60,7 +70,7 @@ impl ManifoldFinding<'_> {
     }
 
     /// Angles of every joint over `manifolds`, inside the physical limits if the robot has any.
-    fn ranges(&self, manifolds: &[SelfMotionManifold]) -> Vec<AngleSet> {
+    pub fn ranges(&self, manifolds: &[SelfMotionManifold]) -> Vec<AngleSet> {
         if self.physical.iter().any(|arc| !arc.is_full()) {
             return ranges_within(manifolds, self.physical);
         }
@@ -96,7 +106,7 @@ impl ManifoldFinding<'_> {
     }
 
     /// What a reader of the numbers must not miss.
-    fn notes(&self) -> Vec<String> {
+    pub fn notes(&self) -> Vec<String> {
         let mut notes = Vec::new();
         match (self.pre_image.completeness, self.pre_image.manifolds.len()) {
             (Completeness::Proved, 0) => {
@@ -110,7 +120,15 @@ impl ManifoldFinding<'_> {
             ),
             _ => {}
         }
-        if self.study.design.robot.physical_limits.is_some() {
+        let robot = &self.study.design.robot;
+        for index in (0..robot.joints()).filter(|&k| robot.joint_kind(k) == JointKind::Prismatic) {
+            notes.push(format!(
+                "Figures and curves.vtk show prismatic joint {} with its stroke as half a turn; \
+                 result.json and manifolds.csv have metres.",
+                index + 1
+            ));
+        }
+        if robot.physical_limits.is_some() {
             notes.push(
                 "Joint ranges are those inside the physical limits; lengths, windings, critical points \
                  and vertices are of the whole curves."
@@ -156,10 +174,19 @@ impl Joints {
             false => "minimum",
         };
         let mut value = json!({ "joint": point.joint + 1, "kind": kind });
-        let theta =
-            |slides: bool| self.each(slides, |joint| json!(self.outer(joint, &point.theta)));
-        self.put(&mut value, "theta", theta);
+        self.put_theta(&mut value, &point.theta);
         value
+    }
+
+    fn configuration(&self, theta: &[f64]) -> Value {
+        let mut value = json!({});
+        self.put_theta(&mut value, theta);
+        value
+    }
+
+    fn put_theta(&self, target: &mut Value, theta: &[f64]) {
+        let of = |slides: bool| self.each(slides, |joint| json!(self.outer(joint, theta)));
+        self.put(target, "theta", of);
     }
 
     /// Variable of `joint` in the unit of files.

@@ -1,14 +1,17 @@
-//! Runs a study of one pose: traces its self-motion manifolds and judges its tolerance of failures.
+//! Runs a study of one pose: traces its self-motion manifolds, judges its tolerance of failures and
+//! writes the report.
 
+use super::manifold_report::{Picture, manifold_report};
 use super::manifold_result::{ManifoldFinding, curves};
+use super::report_parts::formats;
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::{ManifoldSearch, Manifolds, Pose, Study};
 use crate::angle::Arc;
 use crate::design::{JointKind, Robot};
-use crate::manifold::{PreImage, PreImageSearch, SearchSettings};
-use crate::report;
+use crate::manifold::{PreImage, PreImageSearch, SearchSettings, SelfMotionManifold};
+use crate::report::{self, ReportError, write_manifold_report};
 use crate::sampling;
-use crate::workspace::PoseTolerance;
+use crate::workspace::{PoseTolerance, limit_crossings};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use serde_json::{Value, json};
 use std::f64::consts::{FRAC_PI_2, TAU};
@@ -37,16 +40,21 @@ pub(super) fn run(
     let pose = tool(&manifolds.pose);
     let pre_image = search.find(&pose, &mut sampling::stream(study.seed, 0));
     let physical = physical(robot);
-    let tolerance = manifolds.limits.as_ref().map(|limits| {
-        let limits = limits.to_limits(robot);
-        PoseTolerance::of(&pre_image, &physical, &limits, &study.failures)
-    });
+    let limits = manifolds.limits.as_ref().map(|l| l.to_limits(robot));
+    let judge = |l| PoseTolerance::of(&pre_image, &physical, l, &study.failures);
+    let tolerance = limits.as_ref().map(judge);
+    let crossings = |manifold: &SelfMotionManifold| match &limits {
+        Some(limits) => limit_crossings(manifold, limits),
+        None => Vec::new(),
+    };
+    let crossings: Vec<_> = pre_image.manifolds.iter().map(crossings).collect();
     let finding = ManifoldFinding {
         study,
         manifolds,
         pre_image: &pre_image,
         physical: &physical,
         tolerance: tolerance.as_ref(),
+        crossings: &crossings,
         residual: residual(&search, &pre_image, &pose, study),
         seconds: json!({
             "total": ready.session.store.seconds(),
@@ -55,14 +63,29 @@ pub(super) fn run(
         threads: rayon::current_num_threads(),
     };
     let result = finding.to_json();
-    let csv = curves(&pre_image, robot)
-        .to_csv()
-        .map_err(anyhow::Error::from)?;
-    let out = &options.out;
-    report::write_text(&out.join("manifolds.csv"), &csv).map_err(anyhow::Error::from)?;
-    report::write_json(&out.join("result.json"), &result).map_err(anyhow::Error::from)?;
+    progress.update(0, 1, f64::NAN, "writing the report");
+    write(&finding, &result, options, &ready.study_toml).map_err(anyhow::Error::from)?;
     ready.session.store.remove();
     Ok(result)
+}
+
+/// Writes the report, or without figures its numbers alone.
+fn write(
+    finding: &ManifoldFinding,
+    result: &Value,
+    options: &RunOptions,
+    study_toml: &str,
+) -> Result<(), ReportError> {
+    let (study, out) = (finding.study, &options.out);
+    if study.report.figures {
+        let picture = Picture::of(finding);
+        let report = manifold_report(finding, &picture, result, study_toml);
+        write_manifold_report(&report, out, &formats(study))?;
+        return Ok(());
+    }
+    let csv = curves(finding.pre_image, &study.design.robot).to_csv()?;
+    report::write_text(&out.join("manifolds.csv"), &csv)?;
+    report::write_json(&out.join("result.json"), result)
 }
 
 fn settings(search: &ManifoldSearch) -> SearchSettings {

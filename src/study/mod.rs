@@ -15,6 +15,7 @@ mod hybrid_settings;
 mod hybrid_table;
 mod limits;
 mod load;
+mod manifold_report;
 mod manifold_result;
 mod manifold_run;
 mod optimise;

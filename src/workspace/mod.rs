@@ -10,7 +10,7 @@ mod spatial_map;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
-pub use one_pose::{PoseTolerance, ranges_within};
+pub use one_pose::{PoseTolerance, limit_crossings, ranges_within};
 pub use size::{Estimate, WorkspaceSizes};
 pub use spatial_map::SpatialShareMap;
 pub(crate) use spatial_map::interval;

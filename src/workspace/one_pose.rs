@@ -87,7 +87,7 @@ fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]])
     let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); bounds.len()];
     for manifold in manifolds {
         for run in runs(manifold, &|theta: &[f64]| is_inside(theta, bounds)) {
-            for (arcs, [low, high]) in arcs.iter_mut().zip(run) {
+            for (arcs, [low, high]) in arcs.iter_mut().zip(run.spans) {
                 arcs.push(Arc::from_interval(low, high));
             }
         }
@@ -95,17 +95,29 @@ fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]])
     arcs.into_iter().map(AngleSet::from_arcs).collect()
 }
 
-/// Least and greatest variable of every joint.
-type Run = Vec<[f64; 2]>;
+/// The configurations at which a self-motion manifold enters or leaves C′_A, the box of all limits
+/// but joint 1's [S4 §III.B], in internal joint variables unwrapped along the curve.
+pub fn limit_crossings(manifold: &SelfMotionManifold, limits: &ArtificialLimits) -> Vec<Vec<f64>> {
+    let bounds: Vec<[Arc; 1]> = limits.joints().iter().map(|l| [l.arc()]).collect();
+    let runs = runs(manifold, &|theta: &[f64]| is_inside(theta, &bounds));
+    runs.into_iter().flat_map(|run| run.ends).collect()
+}
 
-/// The connected parts of a curve at which `is_inside` holds, each with the interval of every
-/// joint's unwrapped variable.
+/// A connected part of a curve inside a box.
+struct Run {
+    /// Least and greatest variable of every joint.
+    spans: Vec<[f64; 2]>,
+    /// Where the curve enters and leaves the box; not the ends of the curve itself.
+    ends: Vec<Vec<f64>>,
+}
+
+/// The connected parts of a curve at which `is_inside` holds.
 fn runs(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) -> bool) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let first = manifold.point(0);
     let mut was_inside = is_inside(first);
     if was_inside {
-        runs.push(start(first));
+        runs.push(Run::at(first));
     }
     for index in 0..manifold.vertices().saturating_sub(1) {
         for part in 1..=PARTS {
@@ -114,13 +126,16 @@ fn runs(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) -> bool) -> V
             let now = is_inside(&next);
             if now != was_inside {
                 let edge = crossing(manifold, index, [from, to], was_inside, is_inside);
-                match was_inside {
-                    true => widen(&mut runs, &edge),
-                    false => runs.push(start(&edge)),
+                if now {
+                    runs.push(Run::at(&edge));
+                }
+                if let Some(run) = runs.last_mut() {
+                    run.widen(&edge);
+                    run.ends.push(edge);
                 }
             }
-            if now {
-                widen(&mut runs, &next);
+            if now && let Some(run) = runs.last_mut() {
+                run.widen(&next);
             }
             was_inside = now;
         }
@@ -128,14 +143,18 @@ fn runs(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) -> bool) -> V
     runs
 }
 
-fn start(theta: &[f64]) -> Run {
-    theta.iter().map(|&value| [value, value]).collect()
-}
+impl Run {
+    fn at(theta: &[f64]) -> Run {
+        Run {
+            spans: theta.iter().map(|&value| [value, value]).collect(),
+            ends: Vec::new(),
+        }
+    }
 
-fn widen(runs: &mut [Run], theta: &[f64]) {
-    let run = runs.last_mut().into_iter().flatten();
-    for (interval, &value) in run.zip(theta) {
-        *interval = [interval[0].min(value), interval[1].max(value)];
+    fn widen(&mut self, theta: &[f64]) {
+        for (span, &value) in self.spans.iter_mut().zip(theta) {
+            *span = [span[0].min(value), span[1].max(value)];
+        }
     }
 }
 
@@ -169,21 +188,55 @@ mod tests {
     use crate::workspace::planar::{PlanarArm, PlanarPosition};
     use nalgebra::Isometry3;
 
-    /// Rotation sets of planar positions are known in closed form.
+    /// Three unit links with their end at distance 0.5: 2 cos(θ₂/2) runs between 0.5 and 1.5, θ₂
+    /// from 82.8° to 151.0° and back on one curve, from −151.0° to −82.8° on the other.
     #[test]
-    fn agrees_with_the_closed_form_in_the_plane() {
-        let lengths = vec![1.0; 3];
+    fn curves_cross_limits_at_their_ends() {
+        let mut search = search(&[1.0; 3]);
+        let found = search.find(
+            &Isometry3::translation(0.5, 0.0, 0.0),
+            &mut crate::sampling::stream(1, 0),
+        );
+        let limits =
+            ArtificialLimits::from_degrees(&[[-1.0, 1.0], [-180.0, 110.0], [-180.0, 180.0]]);
+        let crossings: Vec<Vec<f64>> = found
+            .manifolds
+            .iter()
+            .flat_map(|manifold| limit_crossings(manifold, &limits))
+            .collect();
+        assert_eq!(crossings.len(), 2);
+        for theta in &crossings {
+            assert!(crate::angle::wrap(theta[1] - 110f64.to_radians()).abs() < 1e-9);
+            let tool = search.chain().tool(theta).translation;
+            assert!((tool.x - 0.5).hypot(tool.y) < 1e-5);
+        }
+        let free = ArtificialLimits::free(3);
+        assert!(
+            found
+                .manifolds
+                .iter()
+                .all(|m| limit_crossings(m, &free).is_empty())
+        );
+    }
+
+    fn search(lengths: &[f64]) -> PreImageSearch {
         let robot = Robot {
             name: "r".into(),
             source: None,
             geometry: Geometry::Planar {
-                lengths: lengths.clone(),
+                lengths: lengths.to_vec(),
             },
             physical_limits: None,
             tool: Isometry3::identity(),
         };
-        let settings = SearchSettings::default();
-        let mut search = PreImageSearch::new(&robot, TaskSpace::PlanarPosition, settings).unwrap();
+        PreImageSearch::new(&robot, TaskSpace::PlanarPosition, SearchSettings::default()).unwrap()
+    }
+
+    /// Rotation sets of planar positions are known in closed form.
+    #[test]
+    fn agrees_with_the_closed_form_in_the_plane() {
+        let lengths = vec![1.0; 3];
+        let mut search = search(&lengths);
         let limits = [[-18.21, 18.21], [-111.322, 111.322], [-111.322, 111.322]];
         let limits = ArtificialLimits::from_degrees(&limits);
         let failures = FailureSet::any(3);
