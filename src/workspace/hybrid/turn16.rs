@@ -50,12 +50,14 @@ impl Arc16 {
         }
     }
 
-    /// The nearest arc; never full unless the given one is.
+    /// The arc between the steps nearest to both ends, so that a joint standing at an end of its
+    /// limits is inside; never full unless the given one is.
     pub fn nearest(arc: &Arc) -> Arc16 {
         if arc.is_full() {
             return Arc16::full();
         }
-        let width = (arc.width() / STEP).round() as i64;
+        let nearest = |angle: f64| (angle / STEP).round() as i64;
+        let width = nearest(arc.end()) - nearest(arc.start());
         Arc16 {
             start: quantise(arc.start()),
             width: width.clamp(0, i64::from(FULL) - 1) as u16,
@@ -106,6 +108,18 @@ mod tests {
         assert_eq!(quantise(-STEP), u16::MAX);
         assert_eq!(quantise(TAU + 2.0 * STEP), 2);
         assert_eq!(quantise(-3.0 * TAU + 0.4 * STEP), 0);
+    }
+
+    /// Faces of a box lie in the box.
+    #[test]
+    fn both_ends_are_inside() {
+        for k in 0..2000 {
+            let (lower, upper) = (0.1 * f64::from(k) - 100.0, 0.101 * f64::from(k) - 97.0);
+            if upper - lower < TAU {
+                let arc = Arc16::nearest(&Arc::from_interval(lower, upper));
+                assert!(arc.contains(quantise(lower)) && arc.contains(quantise(upper)), "{k}");
+            }
+        }
     }
 
     #[test]
