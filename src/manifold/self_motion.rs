@@ -77,6 +77,12 @@ impl SelfMotionManifold {
         &self.tangents[index * self.joints..][..self.joints]
     }
 
+    /// Arc length of the segment from vertex `index` to the next one, radians; they add up to
+    /// `length`.
+    pub fn segment_length(&self, index: usize) -> f64 {
+        self.coordinate(index, 0).length
+    }
+
     /// The cubic of coordinate `joint` alone, between vertices `index` and `index + 1`.
     fn coordinate(&self, index: usize, joint: usize) -> Segment<1> {
         // An isolated configuration has no second vertex.

@@ -247,7 +247,7 @@ pub(super) fn curves(pre_image: &PreImage, robot: &Robot) -> Table {
         for vertex in 0..manifold.vertices() {
             let theta = manifold.point(vertex);
             if vertex > 0 {
-                length += segment_length(manifold, vertex - 1);
+                length += manifold.segment_length(vertex - 1);
             }
             let mut row = vec![
                 curve.to_string(),
@@ -259,15 +259,4 @@ pub(super) fn curves(pre_image: &PreImage, robot: &Robot) -> Table {
         }
     }
     table
-}
-
-/// Arc length of the segment behind vertex `index`: chord and turn of the tangent.
-fn segment_length(manifold: &SelfMotionManifold, index: usize) -> f64 {
-    let n = manifold.joints;
-    let step = |values: &[f64]| -> f64 {
-        let pair = &values[index * n..][..2 * n];
-        let (a, b) = pair.split_at(n);
-        a.iter().zip(b).map(|(a, b)| (b - a) * (b - a)).sum()
-    };
-    step(&manifold.points).sqrt() * (1.0 + step(&manifold.tangents) / 24.0)
 }
