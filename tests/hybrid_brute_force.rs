@@ -89,11 +89,11 @@ impl Arm {
             let (st, ct) = twist.sin_cos();
             r *= Matrix3::new(c, -s * ct, s * st, s, c * ct, -c * st, 0.0, st, ct);
         }
-        let column = |(k, (axis, origin)): (usize, &(Vector3<f64>, Vector3<f64>))| {
-            match self.slide == Some(k) {
-                true => *axis,
-                false => axis.cross(&(p - origin)),
-            }
+        let column = |(k, (axis, origin)): (usize, &(Vector3<f64>, Vector3<f64>))| match self.slide
+            == Some(k)
+        {
+            true => *axis,
+            false => axis.cross(&(p - origin)),
         };
         let columns = axes.iter().enumerate().map(column).collect();
         (p, columns)
@@ -221,7 +221,12 @@ struct Solved<'a> {
 }
 
 impl Solved<'_> {
-    fn new<'a>(arm: &'a Arm, goal: Vector3<f64>, box_: &[Interval], cloud: &[Vec<f64>]) -> Solved<'a> {
+    fn new<'a>(
+        arm: &'a Arm,
+        goal: Vector3<f64>,
+        box_: &[Interval],
+        cloud: &[Vec<f64>],
+    ) -> Solved<'a> {
         let locks = |k: usize| {
             let mut before = Vec::new();
             let mut all = Vec::new();
@@ -295,7 +300,9 @@ impl Solved<'_> {
         let last = values.len() - 1;
         values.swap(1.min(last), last);
         values.iter().all(|q| {
-            before = self.arm.at_lock(0, q - beta, &self.goal, &self.cloud, &before);
+            before = self
+                .arm
+                .at_lock(0, q - beta, &self.goal, &self.cloud, &before);
             !before.is_empty()
         })
     }
@@ -339,7 +346,9 @@ impl Estimator {
     }
 
     fn size(&self, robot: &Robot, box_: &[Interval], failures: &FailureSet) -> f64 {
-        let sizes = self.atlas.sizes(&inner(robot, box_), failures, Rule::Definition);
+        let sizes = self
+            .atlas
+            .sizes(&inner(robot, box_), failures, Rule::Definition);
         sizes.fault_tolerant.value
     }
 }
@@ -358,7 +367,11 @@ fn random_box(arm: &Arm, rng: &mut ChaCha8Rng) -> Vec<Interval> {
     let limit = |(k, physical): (usize, &Option<Interval>)| {
         let mut draw = |low: f64, high: f64| low + (high - low) * rng.random::<f64>();
         let [low, high] = physical.unwrap_or([-PI, PI]);
-        let share = if draw(0.0, 1.0) < 0.15 && k > 0 { 0.0 } else { draw(0.03, 0.4) };
+        let share = if draw(0.0, 1.0) < 0.15 && k > 0 {
+            0.0
+        } else {
+            draw(0.03, 0.4)
+        };
         let width = (high - low) * share;
         let start = draw(low, high - width);
         [start, start + width]
@@ -375,7 +388,13 @@ fn compare(arm: &Arm, failures: &[usize], samples: u32, boxes: usize) {
     };
     let estimator = Estimator::new(arm, samples, None);
     let free = estimator.atlas.sizes(
-        &inner(&robot, &arm.physical.iter().map(|l| l.unwrap_or([-PI, PI])).collect::<Vec<_>>()),
+        &inner(
+            &robot,
+            &arm.physical
+                .iter()
+                .map(|l| l.unwrap_or([-PI, PI]))
+                .collect::<Vec<_>>(),
+        ),
         &failures,
         Rule::Definition,
     );
@@ -438,6 +457,10 @@ fn planar_3r(physical: [Option<Interval>; 3]) -> Arm {
     }
 }
 
+#[expect(
+    clippy::approx_constant,
+    reason = "the published link lengths have four decimals"
+)]
 fn spatial_4r(physical: [Option<Interval>; 4]) -> Arm {
     let quarter = 0.5 * PI;
     Arm {
@@ -486,8 +509,18 @@ fn planar_arms_at_length() {
         compare(&planar_3r([None, None, None]), failures, 300, 3);
         compare(&planar_3r([wide, None, None]), failures, 300, 3);
         compare(&planar_3r([half, None, None]), failures, 300, 3);
-        compare(&planar_3r([None, wide, turn(-150.0, 120.0)]), failures, 300, 3);
-        compare(&planar_3r([half, wide, turn(-150.0, 120.0)]), failures, 300, 3);
+        compare(
+            &planar_3r([None, wide, turn(-150.0, 120.0)]),
+            failures,
+            300,
+            3,
+        );
+        compare(
+            &planar_3r([half, wide, turn(-150.0, 120.0)]),
+            failures,
+            300,
+            3,
+        );
     }
 }
 

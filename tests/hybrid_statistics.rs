@@ -138,7 +138,12 @@ fn position_5r() -> Case {
 }
 
 fn pose_4r() -> Case {
-    let limits = [[-180.0, 180.0], [90.0, 143.0], [90.0, 143.0], [-180.0, 180.0]];
+    let limits = [
+        [-180.0, 180.0],
+        [90.0, 143.0],
+        [90.0, 143.0],
+        [-180.0, 180.0],
+    ];
     Case::planar("4R pose", TaskSpace::PlanarPose, &limits)
 }
 

@@ -11,6 +11,7 @@ mod any_solver;
 mod ascent;
 mod correct;
 mod curve;
+mod extrema;
 mod march;
 mod march_end;
 mod pre_image;

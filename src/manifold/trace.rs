@@ -3,6 +3,7 @@
 
 use super::correct::polish;
 use super::curve::{Curve, CurveStatus};
+use super::extrema::resolve;
 use super::march::{Ending, march};
 use crate::kinematics::{Goal, Kernel};
 
@@ -86,6 +87,9 @@ pub(crate) fn trace<const N: usize, const M: usize>(
     }
     for _ in 0..settings.polish {
         polish(kernel, goal, settings.correction, curve);
+    }
+    if settings.polish > 0 {
+        resolve(kernel, goal, curve);
     }
     curve.measure();
 }
