@@ -169,7 +169,7 @@ fn spatial_4r() -> Case {
             angle: 0.0,
         },
     };
-    let limits = [[-60.0, 60.0], [-30.0, 30.0], [-60.0, 60.0], [-60.0, 60.0]];
+    let limits = [[-163.0, -61.0], [-134.0, -111.0], [-165.0, -21.0], [3.0, 127.0]];
     Case {
         name: "spatial 4R",
         robot: robot(Geometry::Rows {

@@ -9,8 +9,10 @@
 
 mod any_solver;
 mod ascent;
+mod bounds;
 mod correct;
 mod curve;
+mod extents;
 mod march;
 mod march_end;
 mod pre_image;
@@ -22,7 +24,9 @@ mod solver;
 mod source;
 mod trace;
 
+pub use bounds::physical_arcs;
 pub use curve::CurveStatus;
+pub use extents::Extent;
 pub use pre_image::{Completeness, ManifoldError, PreImage, PreImageSearch};
 pub use self_motion::{CriticalPoint, SelfMotionManifold};
 pub use sliced::Faces;
