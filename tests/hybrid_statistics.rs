@@ -4,6 +4,11 @@
 //! For positions the exact measure |B| of every sampled radius is known, so the bias is measured
 //! on the samples themselves, free of their noise.
 
+#![expect(
+    clippy::approx_constant,
+    reason = "published link lengths have four decimals"
+)]
+
 use faultspace::design::{Convention, Geometry, Joint, JointKind, Link, Robot, TaskSpace};
 use faultspace::kinematics::workspace_extent;
 use faultspace::workspace::hybrid::{
@@ -174,7 +179,12 @@ fn spatial_4r() -> Case {
             angle: 0.0,
         },
     };
-    let limits = [[-60.0, 60.0], [-30.0, 30.0], [-60.0, 60.0], [-60.0, 60.0]];
+    let limits = [
+        [-163.0, -61.0],
+        [-134.0, -111.0],
+        [-165.0, -21.0],
+        [3.0, 127.0],
+    ];
     Case {
         name: "spatial 4R",
         robot: robot(Geometry::Rows {

@@ -52,18 +52,23 @@ impl Ascent {
         }
     }
 
-    /// The value of `joint` (from 0) at the end of a walk from `start` that raises (`sign` = 1)
-    /// or lowers (−1) it.
-    pub fn extremum(&self, goal: &Goal<f64>, start: &[f64], joint: usize, sign: f64) -> f64 {
-        let value = match self {
+    /// The configuration at the end of a walk from `start` that raises (`sign` = 1) or lowers (−1)
+    /// `joint` (from 0); `None` if `start` does not lie on the pre-image.
+    pub fn extremum(
+        &self,
+        goal: &Goal<f64>,
+        start: &[f64],
+        joint: usize,
+        sign: f64,
+    ) -> Option<Vec<f64>> {
+        match self {
             Ascent::Two4(kernel) => walk(kernel, goal, start, joint, sign),
             Ascent::Two5(kernel) => walk(kernel, goal, start, joint, sign),
             Ascent::Three5(kernel) => walk(kernel, goal, start, joint, sign),
             Ascent::Three6(kernel) => walk(kernel, goal, start, joint, sign),
             Ascent::Six8(kernel) => walk(kernel, goal, start, joint, sign),
             Ascent::Six9(kernel) => walk(kernel, goal, start, joint, sign),
-        };
-        value.unwrap_or(start[joint])
+        }
     }
 }
 
@@ -92,7 +97,7 @@ fn walk<const N: usize, const M: usize>(
     start: &[f64],
     joint: usize,
     sign: f64,
-) -> Option<f64> {
+) -> Option<Vec<f64>> {
     let start: [f64; N] = start.try_into().ok()?;
     let mut point = settle(kernel, goal, start)?;
     let mut step: f64 = 0.1;
@@ -123,7 +128,7 @@ fn walk<const N: usize, const M: usize>(
             break;
         }
     }
-    Some(point[joint])
+    Some(point.to_vec())
 }
 
 /// The projection of ± the joint's axis onto the null space of J.

@@ -9,8 +9,10 @@
 
 mod any_solver;
 mod ascent;
+mod bounds;
 mod correct;
 mod curve;
+mod extents;
 mod extrema;
 mod march;
 mod march_end;
@@ -23,7 +25,9 @@ mod solver;
 mod source;
 mod trace;
 
+pub use bounds::physical_arcs;
 pub use curve::CurveStatus;
+pub use extents::Extent;
 pub use pre_image::{Completeness, ManifoldError, PreImage, PreImageSearch};
 pub use self_motion::{CriticalPoint, SelfMotionManifold};
 pub use sliced::Faces;

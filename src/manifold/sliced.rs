@@ -1,13 +1,12 @@
 //! Pre-images of two or more dimensions, cut into curves.
 //!
 //! Fixing one joint at each value of a grid leaves a robot with one degree of redundancy less;
-//! down to one, where the slices are curves. Only joint ranges and images of boxes are wanted,
-//! not the surface itself: ranges are unions over slices whose ends are then walked to the
-//! nearest extremum on the surface ([`super::ascent`]), which also closes the gaps that a grid
-//! leaves between slices.
+//! down to one, where the slices are curves. Only joint ranges ([`super::extents`]) and images of
+//! boxes are wanted, not the surface itself.
 
 use super::any_solver::AnySolver;
 use super::ascent::Ascent;
+use super::extents::{self, Extent};
 use super::solver::SearchSettings;
 use super::source::CurveRef;
 use crate::angle::{AngleSet, Arc};
@@ -15,7 +14,6 @@ use crate::design::TaskSpace;
 use crate::kinematics::{Chain, Goal};
 use nalgebra::Isometry3;
 use rand_chacha::ChaCha8Rng;
-use std::f64::consts::{PI, TAU};
 
 /// A family of curves: some joints fixed, the others free.
 #[derive(Clone, Debug)]
@@ -41,22 +39,19 @@ pub(super) struct Sliced {
     settings: SearchSettings,
     pub seeds: usize,
     pub sound: bool,
-    contributions: Vec<Contribution>,
-}
-
-/// The range of one joint on one curve, with the configurations at both ends.
-#[derive(Clone, Debug)]
-struct Contribution {
-    joint: usize,
-    arc: Arc,
-    low: Vec<f64>,
-    high: Vec<f64>,
+    extents: Vec<Extent>,
+    /// Physical limits of every joint.
+    bounds: Vec<Arc>,
+    /// The walls of their box, if a joint from 2 on has any: the surface inside may lie between
+    /// the slices, and ranges have their ends there.
+    walls: Option<Faces>,
 }
 
 impl Sliced {
-    /// `None` if the degree of redundancy is not 2 or 3.
+    /// `None` if the degree of redundancy is not 2 or 3. `bounds` are the physical limits.
     pub fn new(
         chain: &Chain,
+        bounds: Vec<Arc>,
         task: TaskSpace,
         per_joint: usize,
         settings: SearchSettings,
@@ -78,17 +73,32 @@ impl Sliced {
             settings: sparse(settings),
             seeds: 0,
             sound: true,
-            contributions: Vec::new(),
+            extents: Vec::new(),
+            bounds,
+            walls: None,
             cut,
         };
         let mut fixed = Vec::new();
         sliced.lay_out(&mut fixed);
+        if sliced.is_bounded() {
+            let end = |arc: &Arc| (!arc.is_full()).then(|| [arc.start(), arc.end()]);
+            let ends: Vec<_> = sliced.bounds.iter().map(end).collect();
+            sliced.walls = Some(sliced.faces(&ends));
+        }
         Some(sliced)
     }
 
-    /// Distance between neighbouring slices, radians.
-    pub fn spacing(&self) -> f64 {
-        TAU / self.per_joint as f64
+    /// Whether a joint from 2 on has physical limits.
+    fn is_bounded(&self) -> bool {
+        !self.bounds.iter().skip(1).all(Arc::is_full)
+    }
+
+    /// Distance between neighbouring slices along `joint`, radians; 0 if it is not cut.
+    pub fn spacing(&self, joint: usize) -> f64 {
+        match self.cut.contains(&joint) {
+            true => self.bounds[joint].width() / self.per_joint as f64,
+            false => 0.0,
+        }
     }
 
     fn lay_out(&mut self, fixed: &mut Vec<(usize, f64)>) {
@@ -98,24 +108,26 @@ impl Sliced {
             return;
         }
         let joint = self.cut[fixed.len()];
-        for k in 0..self.per_joint {
-            let share = (k as f64 + 0.5) / self.per_joint as f64 - 0.5;
-            let range = if self.chain.joints[joint].turn == 0.0 {
-                PI
-            } else {
-                TAU
-            };
-            fixed.push((joint, share * range));
+        for k in 0..self.values(joint) {
+            fixed.push((joint, self.grid_value(joint, k)));
             self.lay_out(fixed);
             fixed.pop();
         }
     }
 
-    /// Value number `k` of the grid along a joint; strokes are half a turn long.
+    /// How many values of `joint` the grid has.
+    fn values(&self, joint: usize) -> usize {
+        // Limits of width 0 leave it one.
+        match self.bounds[joint].width() > 0.0 {
+            true => self.per_joint,
+            false => 1,
+        }
+    }
+
+    /// Value number `k` of the grid along a joint, within its physical limits.
     fn grid_value(&self, joint: usize, k: usize) -> f64 {
-        let is_prismatic = self.chain.joints[joint].turn == 0.0;
-        let share = (k as f64 + 0.5) / self.per_joint as f64 - 0.5;
-        share * if is_prismatic { PI } else { TAU }
+        let bound = &self.bounds[joint];
+        bound.start() + bound.width() * (k as f64 + 0.5) / self.values(joint) as f64
     }
 
     fn slice(&self, fixed: &[(usize, f64)]) -> Option<Slice> {
@@ -132,7 +144,8 @@ impl Sliced {
         })
     }
 
-    /// Finds the curves of all slices, shows them, and gathers joint ranges.
+    /// Finds the curves of all slices, shows them, and gathers joint ranges. With physical limits
+    /// of joints from 2 on the ranges are empty: see [`Sliced::ranges`].
     pub fn solve(
         &mut self,
         tool: &Isometry3<f64>,
@@ -141,7 +154,7 @@ impl Sliced {
     ) -> Vec<AngleSet> {
         self.seeds = 0;
         self.sound = true;
-        self.contributions.clear();
+        self.extents.clear();
         let whole = Goal::new(&self.chain, tool);
         // Out of reach of the whole robot: no slice needs to be searched.
         let Some(landed) = self
@@ -155,7 +168,7 @@ impl Sliced {
             self.solve_slice(slice, tool, rng, show);
         }
         self.slices = slices;
-        if self.contributions.is_empty() {
+        if self.extents.is_empty() {
             // A small pre-image between the slices: cut it where it was found.
             let fixed: Vec<_> = self
                 .cut
@@ -166,7 +179,10 @@ impl Sliced {
                 self.solve_slice(&mut slice, tool, rng, show);
             }
         }
-        self.ranges(&whole)
+        if self.is_bounded() {
+            return vec![AngleSet::empty(); self.joints];
+        }
+        self.ranges(tool, &self.extents)
     }
 
     fn solve_slice(
@@ -183,7 +199,7 @@ impl Sliced {
         let mut lift = Lift::default();
         slice.solver.show(|curve| {
             let lifted = lift.lift(&curve, &slice.fixed);
-            contribute(&lifted, &mut self.contributions);
+            extents::measure(&lifted, &mut self.extents);
             show(lifted);
         });
     }
@@ -243,7 +259,7 @@ impl Sliced {
             && let Some(&joint) = self.cut.iter().find(|&&joint| joint != face)
             && left == 1
         {
-            for k in 0..self.per_joint {
+            for k in 0..self.values(joint) {
                 fixed.push((joint, self.grid_value(joint, k)));
                 slices.extend(self.slice(fixed));
                 fixed.pop();
@@ -251,46 +267,27 @@ impl Sliced {
         }
     }
 
-    /// Θ of every joint: unions over slices, ends walked to the extremum.
-    fn ranges(&self, goal: &Goal<f64>) -> Vec<AngleSet> {
-        (0..self.joints)
-            .map(|joint| self.range(goal, joint))
-            .collect()
+    /// Shows the curves on the walls of the physical limits of the joints from 2 on.
+    pub fn solve_walls(
+        &mut self,
+        tool: &Isometry3<f64>,
+        rng: &mut ChaCha8Rng,
+        show: &mut dyn FnMut(CurveRef<'_>),
+    ) {
+        if let Some(mut walls) = self.walls.take() {
+            self.solve_faces(tool, &mut walls, rng, show);
+            self.walls = Some(walls);
+        }
     }
 
-    fn range(&self, goal: &Goal<f64>, joint: usize) -> AngleSet {
-        let own = || self.contributions.iter().filter(|c| c.joint == joint);
-        let gap = if self.cut.contains(&joint) {
-            self.spacing() * 1.001
-        } else {
-            0.0
+    /// Θ of every joint, from its ranges on parts of curves inside the physical limits.
+    pub fn ranges(&self, tool: &Isometry3<f64>, parts: &[Extent]) -> Vec<AngleSet> {
+        let goal = Goal::new(&self.chain, tool);
+        let range = |joint: usize| {
+            let gap = 1.001 * self.spacing(joint);
+            extents::range(parts, joint, gap, &self.bounds, (&self.ascent, &goal))
         };
-        let coarse = bridged(&AngleSet::from_arcs(own().map(|c| c.arc)), gap);
-        if coarse.is_full() {
-            return coarse;
-        }
-        let refined = coarse.arcs().iter().map(|arc| {
-            let reach = |sign: f64| {
-                let end = if sign > 0.0 { arc.end() } else { arc.start() };
-                let near = |c: &&Contribution| {
-                    let own = if sign > 0.0 {
-                        c.arc.end()
-                    } else {
-                        c.arc.start()
-                    };
-                    AngleSet::from(Arc::new(own - 1e-9, 2e-9)).contains(end)
-                };
-                let gains = own().filter(near).take(4).map(|c| {
-                    let start = if sign > 0.0 { &c.high } else { &c.low };
-                    let value = self.ascent.extremum(goal, start, joint, sign);
-                    (sign * (value - start[joint])).max(0.0)
-                });
-                gains.fold(0.0, f64::max)
-            };
-            let (below, above) = (reach(-1.0), reach(1.0));
-            Arc::new(arc.start() - below, arc.width() + below + above)
-        });
-        AngleSet::from_arcs(refined)
+        (0..self.joints).map(range).collect()
     }
 }
 
@@ -310,20 +307,6 @@ fn sparse(settings: SearchSettings) -> SearchSettings {
         unreachable_after: settings.unreachable_after.min(12),
         ..settings
     }
-}
-
-/// The set with gaps of at most `gap` closed.
-fn bridged(set: &AngleSet, gap: f64) -> AngleSet {
-    let wide = |arc: &Arc| Arc::new(arc.start() - 0.5 * gap, arc.width() + gap);
-    if gap == 0.0 || set.arcs().len() < 2 {
-        return set.clone();
-    }
-    let closed = AngleSet::from_arcs(set.arcs().iter().map(wide));
-    if closed.is_full() {
-        return closed;
-    }
-    let narrow = |arc: &Arc| Arc::new(arc.start() + 0.5 * gap, arc.width() - gap);
-    AngleSet::from_arcs(closed.arcs().iter().map(narrow))
 }
 
 /// Room for a curve with the fixed joints put back.
@@ -362,26 +345,5 @@ fn spread<T: Copy>(values: &[T], fixed: impl Iterator<Item = (usize, T)>, out: &
     out.extend_from_slice(values);
     for (joint, value) in fixed {
         out.insert(begin + joint, value);
-    }
-}
-
-/// The range of every joint on a curve.
-fn contribute(curve: &CurveRef<'_>, contributions: &mut Vec<Contribution>) {
-    for joint in 0..curve.joints {
-        let vertices = 0..curve.vertices();
-        let value = |index: &usize| curve.point(*index)[joint];
-        let low = vertices
-            .clone()
-            .min_by(|a, b| value(a).total_cmp(&value(b)));
-        let high = vertices.max_by(|a, b| value(a).total_cmp(&value(b)));
-        let (Some(low), Some(high)) = (low, high) else {
-            continue;
-        };
-        contributions.push(Contribution {
-            joint,
-            arc: curve.range(joint),
-            low: curve.point(low).to_vec(),
-            high: curve.point(high).to_vec(),
-        });
     }
 }

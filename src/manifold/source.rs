@@ -1,7 +1,9 @@
 //! A stream of pre-images for many task points: curves are shown, not kept.
 
 use super::any_solver::{AnySolver, CurveVisitor};
+use super::bounds::physical_arcs;
 use super::curve::{Curve, CurveStatus};
+use super::extents::Extent;
 use super::pre_image::ManifoldError;
 use super::segment::Segment;
 use super::sliced::{Faces, Sliced};
@@ -159,7 +161,8 @@ impl CurveSource {
         let method = AnySolver::new(&chain, task)
             .map(Method::Curves)
             .or_else(|| {
-                let sliced = Sliced::new(&chain, task, slices.max(4), settings)?;
+                let sliced =
+                    Sliced::new(&chain, physical_arcs(robot), task, slices.max(4), settings)?;
                 Some(Method::Slices(Box::new(sliced)))
             })
             .ok_or_else(|| ManifoldError::Redundancy {
@@ -185,15 +188,17 @@ impl CurveSource {
     pub fn slabs(&self) -> Vec<f64> {
         let mut slabs = vec![0.0; self.joints()];
         if let Method::Slices(sliced) = &self.method {
-            for &joint in &sliced.cut {
-                slabs[joint] = 0.5 * sliced.spacing();
+            for (joint, slab) in slabs.iter_mut().enumerate() {
+                *slab = 0.5 * sliced.spacing(joint);
             }
         }
         slabs
     }
 
     /// Finds the pre-image of the tool pose `tool`, given in the frame of joint 1; shows its
-    /// curves and returns the range Θ of every joint.
+    /// curves and returns the range Θ of every joint, physical limits left out. If a joint from 2
+    /// on has some, surfaces show their curves on these walls as well, and ranges are those of
+    /// [`CurveSource::ranges_within`].
     pub fn solve(
         &mut self,
         tool: &Isometry3<f64>,
@@ -212,7 +217,24 @@ impl CurveSource {
                 });
                 arcs.into_iter().map(AngleSet::from_arcs).collect()
             }
-            Method::Slices(sliced) => sliced.solve(tool, rng, &mut show),
+            Method::Slices(sliced) => {
+                let ranges = sliced.solve(tool, rng, &mut show);
+                sliced.solve_walls(tool, rng, &mut show);
+                ranges
+            }
+        }
+    }
+
+    /// Θ of every joint inside the physical limits of the joints from 2 on, from its ranges on
+    /// all `parts` of the curves of [`CurveSource::solve`] inside them.
+    pub fn ranges_within(&self, tool: &Isometry3<f64>, parts: &[Extent]) -> Vec<AngleSet> {
+        match &self.method {
+            Method::Curves(_) => {
+                let own = |joint| parts.iter().filter(move |part| part.joint == joint);
+                let set = |joint| AngleSet::from_arcs(own(joint).map(|part| part.arc));
+                (0..self.joints()).map(set).collect()
+            }
+            Method::Slices(sliced) => sliced.ranges(tool, parts),
         }
     }
 

@@ -6,12 +6,11 @@ use super::plan::SamplePlan;
 use super::score::{Limits16, Rule};
 use super::store::{AtlasKey, AtlasStore, ShardBytes};
 use crate::angle::{AngleSet, Arc};
-use crate::design::{JointKind, Robot};
+use crate::design::Robot;
 use crate::kinematics::fixed_transforms;
-use crate::manifold::{CurveSource, ManifoldError, SearchSettings};
+use crate::manifold::{CurveSource, ManifoldError, SearchSettings, physical_arcs};
 use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use rayon::prelude::*;
-use std::f64::consts::{FRAC_PI_2, TAU};
 use std::ops::Range;
 use std::path::Path;
 use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
@@ -21,7 +20,10 @@ use std::time::Instant;
 const SHARD: u64 = 1024;
 
 /// Changes whenever the content of a block changes for the same question.
-const FORMAT: u32 = 1;
+const FORMAT: u32 = 2;
+
+/// Tolerance of the curves behind a focused atlas, as a share of the usual one.
+const FOCUSED: f64 = 1.0 / 16.0;
 
 /// How an atlas is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -142,6 +144,9 @@ impl AtlasRecipe {
             (!is_free).then_some([limit.lower, limit.upper])
         });
         let faces = self.source.faces(&ends.collect::<Vec<_>>());
+        // Images of chords end inside those of curves. A focused atlas keeps no curves, so that
+        // finer ones cost no memory.
+        self.packing.tolerance *= FOCUSED;
         self.packing.focus = Some(Focus { limits, faces });
         self
     }
@@ -335,23 +340,6 @@ fn within(limits: &ArtificialLimits, physical: &[Arc]) -> ArtificialLimits {
     ArtificialLimits::new(pairs.map(cut).collect())
 }
 
-/// Physical limits as arcs of internal joint variables.
-fn physical_arcs(robot: &Robot) -> Vec<Arc> {
-    let arc = |joint: usize| match (robot.joint_kind(joint), &robot.physical_limits) {
-        (JointKind::Prismatic, _) => Arc::from_interval(-FRAC_PI_2, FRAC_PI_2),
-        (JointKind::Revolute, Some(limits)) => {
-            let width = limits.upper[joint] - limits.lower[joint];
-            if width >= TAU - 1e-9 {
-                Arc::FULL
-            } else {
-                Arc::new(limits.lower[joint], width)
-            }
-        }
-        (JointKind::Revolute, None) => Arc::FULL,
-    };
-    (0..robot.joints()).map(arc).collect()
-}
-
 impl Atlas {
     /// Limits prepared for this atlas.
     pub(super) fn limits(
@@ -373,6 +361,22 @@ impl Atlas {
     /// longer one.
     pub fn within_physical(&self, limits: &ArtificialLimits) -> ArtificialLimits {
         within(limits, &self.physical)
+    }
+
+    pub fn map_debug(
+        &self,
+        limits: &ArtificialLimits,
+        failures: &FailureSet,
+    ) -> Vec<(u64, AngleSet)> {
+        let l = self.limits(limits, failures, Rule::Definition);
+        self.views()
+            .flat_map_iter(|v| {
+                let l = l.clone();
+                (0..v.poses.len())
+                    .map(move |i| (u64::from(v.poses[i].sample), l.rotation_set(&v, i)))
+                    .collect::<Vec<_>>()
+            })
+            .collect()
     }
 
     /// What was sampled.

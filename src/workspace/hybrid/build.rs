@@ -5,9 +5,9 @@ use super::clip::Box16;
 use super::plan::{Sample, SamplePlan};
 use super::polyline::Polyline;
 use super::score::runs_of_theta_1;
-use super::turn16::{Arc16, STEP, arcs16, quantise};
+use super::turn16::{Arc16, STEP, angle, arcs16, quantise};
 use crate::angle::{AngleSet, Arc};
-use crate::manifold::{CurveRef, CurveSource, Faces};
+use crate::manifold::{CurveRef, CurveSource, Extent, Faces};
 use crate::workspace::ArtificialLimits;
 
 /// What is kept of a pre-image, and how closely.
@@ -52,6 +52,10 @@ pub(super) fn build_block(
     packer.block
 }
 
+/// Tolerance of the curves that ranges inside physical limits are taken from, as a share of that
+/// of the curves kept: a chord ends before its curve's extremum.
+const CLOSE: f64 = 1.0 / 16.0;
+
 struct Packer {
     joints: usize,
     block: BlockBuilder,
@@ -60,8 +64,10 @@ struct Packer {
     inner: Box16,
     /// The box of the focus, if there is one.
     focus: Option<Box16>,
-    /// Arcs of every joint over the clipped pieces of the current pose.
-    clipped: Vec<Vec<Arc>>,
+    /// Ranges of every joint over the parts of the current pose inside physical limits.
+    parts: Vec<Extent>,
+    /// The curves that these ranges are taken from, closer than the ones kept.
+    close: Polyline,
     /// θ₁-image of the focus of the current pose.
     image: Vec<Arc>,
     flat: Vec<u16>,
@@ -84,7 +90,8 @@ impl Packer {
             line: Polyline::new(joints, packing.tolerance),
             inner: arcs(&packing.physical),
             focus,
-            clipped: vec![Vec::new(); joints],
+            parts: Vec::new(),
+            close: Polyline::new(joints, CLOSE * packing.tolerance),
             image: Vec::new(),
             flat: Vec::new(),
             curves: 0,
@@ -99,7 +106,7 @@ impl Packer {
         index: u64,
         sample: &Sample,
     ) {
-        self.clipped.iter_mut().for_each(Vec::clear);
+        self.parts.clear();
         self.image.clear();
         self.curves = 0;
         let mut rng = plan.search_stream(index);
@@ -123,14 +130,11 @@ impl Packer {
         if let Some(focus) = &packing.focus {
             self.push_image(&focus.limits);
         }
-        let is_clipped = !self.inner.active.is_empty();
-        let ranges = free.iter().enumerate().map(|(joint, set)| {
-            if is_clipped {
-                arcs16(&AngleSet::from_arcs(self.clipped[joint].iter().copied())).collect()
-            } else {
-                arcs16(set).collect()
-            }
-        });
+        let ranges = match self.inner.active.is_empty() {
+            true => free,
+            false => source.ranges_within(&sample.tool, &self.parts),
+        };
+        let ranges = ranges.iter().map(|set| arcs16(set).collect());
         self.block.finish_pose(
             index as u32,
             sample.stratum,
@@ -143,40 +147,26 @@ impl Packer {
     /// Packs a curve, or its image in the focus. Curves on faces of the focus are no part of the
     /// ranges.
     fn push_curve(&mut self, curve: &CurveRef, counts: bool) {
-        self.flatten(curve);
-        let flat = std::mem::take(&mut self.flat);
+        let mut flat = std::mem::take(&mut self.flat);
         if self.inner.active.is_empty() {
+            flatten(curve, &mut self.line, &mut flat);
             self.curves += 1;
             self.keep(&flat);
         } else {
-            for part in parts_inside(&self.inner, &flat, self.joints) {
-                self.curves += 1;
-                if counts {
-                    for (joint, arcs) in self.clipped.iter_mut().enumerate() {
-                        arcs.push(swept(&part, self.joints, joint));
-                    }
+            if counts {
+                flatten(curve, &mut self.close, &mut flat);
+                for part in parts_inside(&self.inner, &flat, self.joints) {
+                    let extents = (0..self.joints).map(|joint| swept(&part, self.joints, joint));
+                    self.parts.extend(extents);
+                    self.curves += 1;
                 }
+            }
+            flatten(curve, &mut self.line, &mut flat);
+            for part in parts_inside(&self.inner, &flat, self.joints) {
                 self.keep(&part);
             }
         }
         self.flat = flat;
-    }
-
-    /// The curve as a polyline in steps.
-    fn flatten(&mut self, curve: &CurveRef) {
-        self.line.begin(curve.point(0));
-        for index in 0..curve.vertices() - 1 {
-            let (length, turn) = curve.bend(index);
-            let splits = self.line.splits(length, turn);
-            for split in 1..splits {
-                let u = split as f64 / splits as f64;
-                curve.at(index, u, |point| self.line.push(point));
-            }
-            self.line.push(curve.point(index + 1));
-        }
-        self.flat.clear();
-        let angles = self.line.finish().iter();
-        self.flat.extend(angles.map(|&angle| quantise(angle)));
     }
 
     fn keep(&mut self, piece: &[u16]) {
@@ -228,16 +218,42 @@ fn parts_inside(limits: &Box16, piece: &[u16], n: usize) -> Vec<Vec<u16>> {
     parts
 }
 
-/// The arc that a joint sweeps along a polyline.
-fn swept(part: &[u16], n: usize, joint: usize) -> Arc {
-    let mut values = part.chunks_exact(n).map(|vertex| vertex[joint]);
-    let first = values.next().unwrap_or_default();
-    let (mut low, mut high, mut at, mut last) = (0i64, 0i64, 0i64, first);
-    for value in values {
-        at += i64::from(value.wrapping_sub(last) as i16);
-        last = value;
-        (low, high) = (low.min(at), high.max(at));
+/// The curve as a polyline in steps.
+fn flatten(curve: &CurveRef, line: &mut Polyline, flat: &mut Vec<u16>) {
+    line.begin(curve.point(0));
+    for index in 0..curve.vertices() - 1 {
+        let (length, turn) = curve.bend(index);
+        let splits = line.splits(length, turn);
+        for split in 1..splits {
+            let u = split as f64 / splits as f64;
+            curve.at(index, u, |point| line.push(point));
+        }
+        line.push(curve.point(index + 1));
     }
-    let start = f64::from(first) * STEP;
-    Arc::from_interval(start + low as f64 * STEP, start + high as f64 * STEP)
+    flat.clear();
+    flat.extend(line.finish().iter().map(|&angle| quantise(angle)));
+}
+
+/// The arc that a joint sweeps along a polyline.
+fn swept(part: &[u16], n: usize, joint: usize) -> Extent {
+    let value = |vertex: usize| part[vertex * n + joint];
+    // Where the joint stands after every vertex, unwrapped, in steps from the first one.
+    let mut at = 0i64;
+    let (mut low, mut high) = ((0, 0), (0, 0));
+    for vertex in 1..part.len() / n {
+        at += i64::from(value(vertex).wrapping_sub(value(vertex - 1)) as i16);
+        low = low.min((at, vertex));
+        high = high.max((at, vertex));
+    }
+    let configuration = |vertex: usize| {
+        let steps = &part[vertex * n..][..n];
+        steps.iter().map(|&step| angle(step)).collect()
+    };
+    let start = angle(value(0));
+    Extent {
+        joint,
+        arc: Arc::from_interval(start + low.0 as f64 * STEP, start + high.0 as f64 * STEP),
+        low: configuration(low.1),
+        high: configuration(high.1),
+    }
 }

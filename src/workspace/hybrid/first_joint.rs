@@ -12,6 +12,9 @@ use crate::angle::{AngleSet, Arc};
 /// Angles at which a lock is examined lie at most this far apart, radians.
 const LOCK_STEP: f64 = 0.02;
 
+/// An edge along which the joint stands still is examined at points this close, radians.
+const LONGEST_TURN: f64 = 0.2;
+
 /// Rotation angles at which joint `joint` (from 0) may lock anywhere in `limit`.
 ///
 /// `gap` is the complement of P₁, and `slab` half the distance between slices along the joint.
@@ -47,7 +50,9 @@ fn lost_at(
 ) -> AngleSet {
     // { β : t + β in the gap for every t found so far }.
     let mut lost = AngleSet::full();
+    let mut none = true;
     let mut add = |theta: f64| {
+        none = false;
         lost = lost.intersection(&AngleSet::from(gap.rotated(-theta)));
         !lost.is_empty()
     };
@@ -63,7 +68,8 @@ fn lost_at(
             let turn = f64::from(to[0].wrapping_sub(from[0]) as i16);
             let theta = |u: f64| (f64::from(from[0]) + u * turn) * STEP;
             let goes_on = if step == 0 {
-                before.abs() > reach || (add(theta(0.0)) && add(theta(1.0)))
+                let parts = (turn.abs() * STEP / LONGEST_TURN).ceil().max(1.0);
+                before.abs() > reach || (0..=parts as usize).all(|k| add(theta(k as f64 / parts)))
             } else if before.signum() * (before + step).signum() <= 0 && before.abs() <= step.abs()
             {
                 add(theta(-f64::from(before) / f64::from(step)))
@@ -76,5 +82,6 @@ fn lost_at(
             from = to;
         }
     }
-    lost
+    // A ⊂ Θ says that the angle is taken, be it within rounding of an end or between slices.
+    if none { AngleSet::empty() } else { lost }
 }

@@ -85,7 +85,10 @@ impl Atlas {
                 centres,
                 ..
             } => {
-                let random = stratified_variance(strata, orientations);
+                let random = match orientations {
+                    1 => variance_between(strata, self.plan().cells()[0]),
+                    each => variance_within(strata, each),
+                };
                 let cells = if centres {
                     self.discretisation(strata)
                 } else {
@@ -141,19 +144,30 @@ fn replicate_variance(replicates: &[[f64; 2]], value: f64) -> f64 {
     square * count / (count - 1.0).max(1.0)
 }
 
-/// Independent samples in every cell; with one a cell, neighbours are taken together.
-fn stratified_variance(cells: &[[f64; 2]], each: u32) -> f64 {
-    if each >= 2 {
-        let n = f64::from(each);
-        let within = |sum: &[f64; 2]| (sum[1] - sum[0] * sum[0] / n) * n / (n - 1.0);
-        return cells.iter().map(within).sum();
+/// Independent samples in every cell.
+fn variance_within(cells: &[[f64; 2]], each: u32) -> f64 {
+    let n = f64::from(each);
+    let within = |sum: &[f64; 2]| (sum[1] - sum[0] * sum[0] / n) * n / (n - 1.0);
+    cells.iter().map(within).sum()
+}
+
+/// One sample in every cell, `columns` cells a row: half the mean square difference of neighbours,
+/// all of them. The border of a workspace always lies between some two, so that the estimate
+/// cannot miss it; pairs of cells taken apart would, every other time.
+fn variance_between(cells: &[[f64; 2]], columns: usize) -> f64 {
+    let squares = |pairs: &mut dyn Iterator<Item = (usize, usize)>| -> f64 {
+        pairs
+            .map(|(a, b)| (cells[a][0] - cells[b][0]).powi(2))
+            .sum()
+    };
+    let count = cells.len();
+    let beside = |&(a, _): &(usize, usize)| (a + 1) % columns != 0;
+    let across = squares(&mut (1..count).map(|b| (b - 1, b)).filter(beside));
+    let along = squares(&mut (columns..count).map(|b| (b - columns, b)));
+    match count > columns {
+        true => 0.25 * (across + along),
+        false => 0.5 * across,
     }
-    let pairs = cells.chunks(2).map(|pair| match pair {
-        [a, b] => (a[0] - b[0]).powi(2),
-        [a] => a[0].powi(2),
-        _ => 0.0,
-    });
-    pairs.sum()
 }
 
 /// Sums of every stratum in the block, in order of strata: S_F, W₀, unrestricted, W_1 … W_n.
