@@ -68,7 +68,11 @@ pub(super) fn range(
         pairs.all(|(&angle, bound)| bound.contains_within(angle, SLACK))
     };
     let gain = |extent: &Extent, sign: f64| {
-        let start = if sign > 0.0 { &extent.high } else { &extent.low };
+        let start = if sign > 0.0 {
+            &extent.high
+        } else {
+            &extent.low
+        };
         match ascent.extremum(goal, start, joint, sign) {
             Some(end) if is_allowed(&end) => (sign * (end[joint] - start[joint])).max(0.0),
             _ => 0.0,
@@ -77,9 +81,8 @@ pub(super) fn range(
     let refined = coarse.arcs().iter().map(|arc| {
         let reach = |sign: f64| {
             let end = |arc: &Arc| if sign > 0.0 { arc.end() } else { arc.start() };
-            let near = |extent: &&Extent| {
-                Arc::point(end(arc)).contains_within(end(&extent.arc), 1e-9)
-            };
+            let near =
+                |extent: &&Extent| Arc::point(end(arc)).contains_within(end(&extent.arc), 1e-9);
             let gains = own().filter(near).take(4).map(|extent| gain(extent, sign));
             gains.fold(0.0, f64::max)
         };

@@ -161,7 +161,8 @@ impl CurveSource {
         let method = AnySolver::new(&chain, task)
             .map(Method::Curves)
             .or_else(|| {
-                let sliced = Sliced::new(&chain, physical_arcs(robot), task, slices.max(4), settings)?;
+                let sliced =
+                    Sliced::new(&chain, physical_arcs(robot), task, slices.max(4), settings)?;
                 Some(Method::Slices(Box::new(sliced)))
             })
             .ok_or_else(|| ManifoldError::Redundancy {

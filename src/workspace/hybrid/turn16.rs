@@ -117,7 +117,10 @@ mod tests {
             let (lower, upper) = (0.1 * f64::from(k) - 100.0, 0.101 * f64::from(k) - 97.0);
             if upper - lower < TAU {
                 let arc = Arc16::nearest(&Arc::from_interval(lower, upper));
-                assert!(arc.contains(quantise(lower)) && arc.contains(quantise(upper)), "{k}");
+                assert!(
+                    arc.contains(quantise(lower)) && arc.contains(quantise(upper)),
+                    "{k}"
+                );
             }
         }
     }
