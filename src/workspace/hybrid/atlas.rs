@@ -363,22 +363,6 @@ impl Atlas {
         within(limits, &self.physical)
     }
 
-    pub fn map_debug(
-        &self,
-        limits: &ArtificialLimits,
-        failures: &FailureSet,
-    ) -> Vec<(u64, AngleSet)> {
-        let l = self.limits(limits, failures, Rule::Definition);
-        self.views()
-            .flat_map_iter(|v| {
-                let l = l.clone();
-                (0..v.poses.len())
-                    .map(move |i| (u64::from(v.poses[i].sample), l.rotation_set(&v, i)))
-                    .collect::<Vec<_>>()
-            })
-            .collect()
-    }
-
     /// What was sampled.
     pub fn plan(&self) -> &SamplePlan {
         &self.plan
