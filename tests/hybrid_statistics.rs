@@ -259,8 +259,9 @@ impl Runs {
     }
 }
 
-/// Prints a row of the table and checks it: every run within 3 standard errors of the exact
-/// sizes, and a mean bias below `most`.
+/// Prints a row of the table and checks it: runs within 3 standard errors of the exact sizes, and a
+/// mean bias below `most`. An error from 32 replicates is itself uncertain: one run in 190 lies
+/// beyond 3 of them by chance, so one in 20 may, up to 4.
 fn agrees(case: &Case, kind: &str, sampling: Sampling, seeds: u64, most: f64) {
     let exact = case.exact();
     let runs = Runs::new(case, sampling, 0..seeds);
@@ -281,7 +282,9 @@ fn agrees(case: &Case, kind: &str, sampling: Sampling, seeds: u64, most: f64) {
         100.0 * within,
         100.0 * within_max,
     );
-    assert!(within == 1.0 && within_max == 1.0, "{} {kind}", case.name);
+    let [far, far_max] = [0, 1].map(|k| runs.coverage(k, exact[k], 4.0));
+    assert!(within.min(within_max) >= 0.95, "{} {kind}", case.name);
+    assert!(far.min(far_max) == 1.0, "{} {kind}", case.name);
     assert!(bias.abs() < most, "{} {kind}: {bias}", case.name);
 }
 
@@ -317,7 +320,7 @@ fn intervals_cover_the_mean() {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "about 5 minutes"]
 fn sizes_have_no_bias_at_length() {
     for (case, samples, cells) in [(position_3r(), 8192, 0.0005), (position_4r(), 1024, 0.002)] {
         agrees(&case, "lattice", lattice(samples), 20, 0.003);
@@ -329,12 +332,17 @@ fn sizes_have_no_bias_at_length() {
     agrees(&pose_4r(), "lattice", lattice(65_536), 20, 0.005);
     agrees(&pose_4r(), "grid", grid(0.005, 20, false), 20, 0.03);
     agrees(&pose_4r(), "grid, centres", grid(0.005, 20, true), 20, 0.05);
+}
+
+#[test]
+#[ignore = "about 3 minutes"]
+fn sizes_of_5r_poses_have_no_bias_at_length() {
     agrees(&pose_5r(), "lattice", lattice(4096), 20, 0.015);
     agrees(&pose_5r(), "grid", grid(0.02, 20, false), 20, 0.03);
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "about a minute"]
 fn intervals_cover_the_mean_at_length() {
     covers(&position_3r(), "lattice", lattice(1024), 50);
     covers(&position_3r(), "grid", grid(0.002, 1, false), 50);
