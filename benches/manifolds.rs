@@ -3,7 +3,7 @@
 //! Compare the lines of one run with each other: absolute times depend on the machine.
 
 #[path = "../tests/arms/mod.rs"]
-#[allow(dead_code)]
+#[allow(dead_code, reason = "the tests use more of the arms")]
 mod arms;
 
 use criterion::{Criterion, criterion_group, criterion_main};

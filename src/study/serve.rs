@@ -102,7 +102,7 @@ fn exact_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> 
             other.problem.expected
         ),
     };
-    Some(refusal(place, message, found, expected, help))
+    refusal(place, message, found, expected, help)
 }
 
 /// The atlas holds pre-images of up to [`MAX_REDUNDANCY`] degrees of redundancy.
@@ -125,37 +125,19 @@ fn manifold_refusal<'f>(file: &'f StudyFile, robot: &Robot, most: isize) -> Opti
         let most = task.dimension() as isize + most;
         let expected = format!("at most {most} joints for \"{task}\"");
         let help = "choose a task of more dimensions or a robot with fewer joints";
-        return Some(refusal(
-            &file.space.place,
-            message,
-            found,
-            expected,
-            help.into(),
-        ));
+        return refusal(&file.space.place, message, found, expected, help);
     }
     if let (true, Err(not_planar)) = (task.is_planar(), robot.planar_chain()) {
         let found = format!("the robot `{name}`: {}", not_planar.reason);
         let expected = "a planar chain of revolute joints, because the task is planar";
         let help = "choose a spatial task, or a planar robot";
-        return Some(refusal(
-            design,
-            message,
-            found,
-            expected.into(),
-            help.into(),
-        ));
+        return refusal(design, message, found, expected, help);
     }
     if !task.is_planar() && robot.planar_chain().is_ok() {
         let found = format!("the robot `{name}`, which moves in a plane");
         let expected = "a robot whose axes are not all parallel, because the task is spatial";
         let help = "choose a planar task";
-        return Some(refusal(
-            design,
-            message,
-            found,
-            expected.into(),
-            help.into(),
-        ));
+        return refusal(design, message, found, expected, help);
     }
     prismatic_refusal(file, robot)
 }
@@ -168,13 +150,7 @@ fn prismatic_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'
         let found = format!("the robot `{}`, whose joint 1 is prismatic", robot.name);
         let expected = "a revolute joint 1, about which the workspace is turned";
         let help = "choose a robot whose joint 1 turns";
-        return Some(refusal(
-            design,
-            message,
-            found,
-            expected.into(),
-            help.into(),
-        ));
+        return refusal(design, message, found, expected, help);
     }
     if joint_scales(robot).is_none() {
         let prismatic = |index: &usize| robot.joint_kind(*index) == JointKind::Prismatic;
@@ -185,13 +161,7 @@ fn prismatic_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'
         );
         let expected = "physical limits of every prismatic joint";
         let help = "add `lower` and `upper` to `[physical_limits]` of the robot file";
-        return Some(refusal(
-            design,
-            message,
-            found,
-            expected.into(),
-            help.into(),
-        ));
+        return refusal(design, message, found, expected, help);
     }
     None
 }
@@ -206,13 +176,7 @@ fn physical_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f
         let found = format!("the robot `{}` with physical limits of joint 1", robot.name);
         let expected = "a joint 1 that turns freely, or limits that are 360° apart";
         let help = "write [-180, 180] for joint 1: the turn of the whole arm is then not limited";
-        return Some(refusal(
-            design,
-            message,
-            found,
-            expected.into(),
-            help.into(),
-        ));
+        return refusal(design, message, found, expected, help);
     }
     None
 }
@@ -245,16 +209,16 @@ fn refusal<'f>(
     place: &'f Place,
     message: &str,
     found: String,
-    expected: String,
-    help: String,
-) -> Refusal<'f> {
+    expected: impl Into<String>,
+    help: impl Into<String>,
+) -> Option<Refusal<'f>> {
     let problem = Problem {
         message: message.to_owned(),
         found,
-        expected,
-        help,
+        expected: expected.into(),
+        help: help.into(),
     };
-    Refusal { place, problem }
+    Some(Refusal { place, problem })
 }
 
 fn report_no_redundancy(file: &StudyFile, problems: &Problems, robot: &Robot) {

@@ -93,7 +93,7 @@ pub fn sliding() -> Robot {
 }
 
 /// The spatial 4R arm of Clark & Xie 2025, with the published digits.
-#[allow(clippy::approx_constant)]
+#[allow(clippy::approx_constant, reason = "published digits")]
 pub fn spatial_4r() -> Robot {
     rows(
         Convention::Standard,
