@@ -38,6 +38,8 @@ pub struct CoordinateAscentSettings {
     /// A restart has converged when two sweeps in a row gain less than this share of the score
     /// while its steps are short. Too large: it stops on a slope; too small: time. 1e-9.
     pub tolerance: f64,
+    /// Steps up to this length are short. 1e-5.
+    pub short_step: f64,
 }
 
 impl Default for CoordinateAscentSettings {
@@ -49,6 +51,7 @@ impl Default for CoordinateAscentSettings {
             finalists: 6,
             max_sweeps: 100,
             tolerance: 1e-9,
+            short_step: 1e-5,
         }
     }
 }
@@ -65,9 +68,6 @@ const TRAIL: usize = 5;
 
 /// Nearest other restarts whose direction a sweep tries.
 const PEERS: usize = 3;
-
-/// A restart has short steps when none exceeds this.
-const SHORT_STEP: f64 = 1e-5;
 
 /// The solver.
 #[derive(Clone, Serialize, Deserialize)]
@@ -240,13 +240,13 @@ impl Climber {
                 range,
             };
             let scans = self.sweep < settings.scout_sweeps && index < space.directions.len();
-            let found = line.exact().unwrap_or_else(|| {
-                if scans {
-                    line.scan(settings.line_samples.max(4))
-                } else {
-                    line.step(self.step_length(index, range))
-                }
-            });
+            let found = if scans {
+                line.exact(FIRST_STEP * (range[1] - range[0]))
+                    .unwrap_or_else(|| line.scan(settings.line_samples.max(4)))
+            } else {
+                let step = self.step_length(index, range);
+                line.exact_near(step).unwrap_or_else(|| line.step(step))
+            };
             self.accept(space, &direction, found);
         }
         self.move_index += 1;
@@ -315,7 +315,7 @@ impl Climber {
     fn end_sweep(&mut self, settings: &CoordinateAscentSettings, own_directions: usize) {
         let gain = self.best.score - self.sweep_start.score;
         let quiet = gain <= settings.tolerance * self.best.score.abs();
-        let short = |step: &f64| step.is_nan() || *step <= SHORT_STEP;
+        let short = |step: &f64| step.is_nan() || *step <= settings.short_step;
         let settled = quiet && self.steps[..own_directions].iter().all(short);
         self.quiet_sweeps = if settled { self.quiet_sweeps + 1 } else { 0 };
         self.sweep += 1;

@@ -25,7 +25,10 @@ pub(super) struct Found {
 
 /// Points of each pass over a line whose scores come all at once: first over all of it, then
 /// around the best.
-const PASSES: [usize; 3] = [73, 25, 25];
+const PASSES: [usize; 2] = [73, 25];
+
+/// The same for a part of the line.
+const NEAR_PASSES: [usize; 2] = [17, 17];
 
 /// Golden-section refinements after a scan: the bracket shrinks by 0.618 each.
 const REFINEMENTS: usize = 8;
@@ -78,16 +81,33 @@ impl Line<'_> {
         best
     }
 
-    /// The maximum over the whole line, if the objective gives all scores of a line at once.
-    pub fn exact(&self) -> Option<Found> {
+    /// The maximum over the whole line, if the objective gives all scores of a line at once. The
+    /// next search of the line may start with steps of `step`.
+    pub fn exact(&self, step: f64) -> Option<Found> {
+        let best = self.passes(self.range, &PASSES)?;
+        Some(Found { step, ..best })
+    }
+
+    /// The maximum within two steps, if the objective gives all scores of a line at once. The step
+    /// for the next search follows the move.
+    pub fn exact_near(&self, step: f64) -> Option<Found> {
+        let reach = 2.0 * step;
+        let range = [(-reach).max(self.range[0]), reach.min(self.range[1])];
+        let best = self.passes(range, &NEAR_PASSES)?;
+        let step = best.t.abs().clamp(0.25 * step, 2.0 * step);
+        Some(Found { step, ..best })
+    }
+
+    /// Scores over `range` and then around the best, with the given numbers of points.
+    fn passes(&self, mut range: [f64; 2], passes: &[usize]) -> Option<Found> {
+        let [low, high] = range;
         let mut best = Found {
             t: 0.0,
             score: self.score,
             step: 0.0,
             evaluations: 0,
         };
-        let mut range = self.range;
-        for points in PASSES {
+        for &points in passes {
             let spacing = (range[1] - range[0]) / (points - 1) as f64;
             let ts: Vec<f64> = (0..points).map(|k| range[0] + k as f64 * spacing).collect();
             let scores = self.objective.scores_along(self.x, self.direction, &ts)?;
@@ -95,12 +115,8 @@ impl Line<'_> {
             for (&t, &score) in ts.iter().zip(&scores) {
                 best.offer(t, score);
             }
-            range = [
-                (best.t - spacing).max(self.range[0]),
-                (best.t + spacing).min(self.range[1]),
-            ];
+            range = [(best.t - spacing).max(low), (best.t + spacing).min(high)];
         }
-        best.step = best.t.abs();
         Some(best)
     }
 

@@ -12,7 +12,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Version of the file's layout.
-const LAYOUT: u32 = 1;
+const LAYOUT: u32 = 2;
 
 /// Shortest time between two checkpoints: what a killed run loses at most, beside the iteration
 /// it was in.
@@ -23,8 +23,9 @@ const INTERVAL: Duration = Duration::from_millis(200);
 pub(super) enum Stage {
     Ascent(Box<Snapshot<CoordinateAscent>>),
     Genetic(Box<Snapshot<Genetic>>),
-    Polish {
-        before: Record,
+    /// A local stage, with the records of those before it.
+    Local {
+        before: Vec<Record>,
         snapshot: Box<Snapshot<CoordinateAscent>>,
     },
 }
@@ -32,6 +33,10 @@ pub(super) enum Stage {
 /// What is kept of a search that has ended.
 #[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(super) struct Record {
+    /// The stage's name.
+    pub stage: String,
+    /// Samples behind its scores, if they are estimates.
+    pub samples: Option<u64>,
     pub best_score: f64,
     pub evaluations: u64,
     pub history: Vec<HistoryPoint>,

@@ -3,7 +3,8 @@
 use super::hybrid_arm::{Needed, Samples, check_cache};
 use super::hybrid_result::HybridFinding;
 use super::hybrid_settings::Hybrid;
-use super::optimise::{Optimum, Terms, search};
+use super::optimise::{Coarse, Optimum, Terms, search};
+use super::parts::parts;
 use super::report_parts::{convergence, failures_label, formats, provenance_rows, size_notes};
 use super::result::status;
 use super::run::{Ready, RunError, RunOptions};
@@ -23,6 +24,9 @@ const SWEEPS: usize = 12;
 /// Relative gain of a sweep below which a search over an atlas has converged: far below the
 /// standard error of any affordable atlas.
 const TOLERANCE: f64 = 1e-4;
+
+/// Length up to which steps over an atlas are short, radians.
+const SHORT_STEP: f64 = 0.01;
 
 /// Runs `study` to its report and returns the content of `result.json`.
 ///
@@ -112,15 +116,27 @@ impl Run<'_> {
         let robot = &study.design.robot;
         let min_width = optimise.search.min_width_deg.to_radians();
         let space = DesignSpace::of_robot(robot, study.task, min_width);
-        let (failures, rule) = (study.failures.clone(), self.hybrid.rule);
-        let objective = HybridObjective::new(space.clone(), atlas, failures, rule);
+        let rule = self.hybrid.rule;
+        let score =
+            |atlas| HybridObjective::new(space.clone(), atlas, study.failures.clone(), rule);
+        let parts = parts(optimise, atlas);
+        let scores: Vec<HybridObjective> = parts.iter().map(|part| score(&part.atlas)).collect();
+        let coarse = parts.iter().zip(&scores).map(|(part, score)| Coarse {
+            objective: score,
+            samples: part.samples,
+            finalists: part.finalists,
+        });
+        let objective = score(atlas);
         let start = optimise.start.as_ref();
         let terms = Terms {
             space: &space,
             objective: &objective,
+            samples: Some(atlas.plan().len()),
+            coarse: coarse.collect(),
             start: start.map(|start| space.point(&start.to_limits(robot))),
             max_sweeps: SWEEPS,
             tolerance: TOLERANCE,
+            short_step: SHORT_STEP,
         };
         let saved = self.ready.saved.take();
         let optimum = search(optimise, &terms, study.seed, saved, &self.ready.session)?;

@@ -19,6 +19,7 @@ mod manifold_report;
 mod manifold_result;
 mod manifold_run;
 mod optimise;
+mod parts;
 mod picture;
 mod planar_arm;
 mod planar_run;

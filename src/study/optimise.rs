@@ -1,8 +1,11 @@
-//! The search of an optimisation study: a global stage, and after a genetic one a local one.
+//! The search of an optimisation study: a global stage, then local ones.
 //!
 //! Planar positions are scored exactly. Planar poses are scored at the coarse resolution
 //! throughout, and everything else over an atlas; then the optimum is measured anew at the study's
 //! tolerance or on an independent atlas.
+//!
+//! After a genetic stage coordinate ascent refines the best. Over an atlas, coordinate ascent
+//! starts on a part of the samples, and its best go on with more and more of them.
 
 use super::checkpoint::{Record, Stage, Store};
 use super::run::{Progress, RunError};
@@ -23,6 +26,9 @@ use std::sync::atomic::AtomicBool;
 /// Starting points of the local stage.
 const POLISHED: usize = 5;
 
+/// Most sweeps of a stage that goes on with more samples: it starts close to a maximum.
+const REFINING_SWEEPS: usize = 5;
+
 /// Copies of the best candidate start the local stage this far off it, as a share of the box:
 /// climbers that stall on one ridge at different places show each other its direction.
 const SPREAD: f64 = 0.01;
@@ -31,12 +37,36 @@ const SPREAD: f64 = 0.01;
 pub(super) struct Terms<'a> {
     pub space: &'a DesignSpace,
     pub objective: &'a dyn Objective,
+    /// Samples behind a score, if it is an estimate.
+    pub samples: Option<u64>,
+    /// Cheaper estimates of the same score, coarsest first, with which coordinate ascent begins.
+    pub coarse: Vec<Coarse<'a>>,
     /// A first candidate.
     pub start: Option<Vec<f64>>,
     /// Most sweeps: fewer where a score costs milliseconds.
     pub max_sweeps: usize,
     /// Least relative gain of a sweep that counts: no less than what the score is good to.
     pub tolerance: f64,
+    /// Length up to which steps are short.
+    pub short_step: f64,
+}
+
+/// The score estimated from a part of the samples.
+pub(super) struct Coarse<'a> {
+    pub objective: &'a dyn Objective,
+    pub samples: u64,
+    /// How many of the best found with it go on.
+    pub finalists: usize,
+}
+
+/// A local stage.
+struct Local<'a> {
+    name: &'static str,
+    objective: &'a dyn Objective,
+    samples: Option<u64>,
+    /// Finalists of the stage before; `None` for those of [`polish_starts`].
+    finalists: Option<usize>,
+    settings: CoordinateAscentSettings,
 }
 
 impl Terms<'_> {
@@ -44,23 +74,67 @@ impl Terms<'_> {
         CoordinateAscentSettings {
             max_sweeps: settings.max_sweeps.min(self.max_sweeps),
             tolerance: settings.tolerance.max(self.tolerance),
+            short_step: self.short_step,
             ..settings
         }
+    }
+
+    /// The score of the global stage, with its number of samples.
+    fn first(&self, optimise: &Optimise) -> (&dyn Objective, Option<u64>) {
+        match (&optimise.optimiser, self.coarse.first()) {
+            (OptimiserSettings::CoordinateAscent(_), Some(coarse)) => {
+                (coarse.objective, Some(coarse.samples))
+            }
+            _ => (self.objective, self.samples),
+        }
+    }
+
+    /// The stages after the global one.
+    fn local_stages(&self, optimise: &Optimise) -> Vec<Local<'_>> {
+        let ascent = match &optimise.optimiser {
+            OptimiserSettings::CoordinateAscent(ascent) => ascent,
+            OptimiserSettings::Genetic(genetic) if genetic.polish => {
+                return vec![Local {
+                    name: "polish",
+                    objective: self.objective,
+                    samples: self.samples,
+                    finalists: None,
+                    settings: self.within_reason(Default::default()),
+                }];
+            }
+            OptimiserSettings::Genetic(_) => return Vec::new(),
+        };
+        let settings = self.within_reason(ascent_settings(ascent));
+        let finer = self.coarse.iter().skip(1);
+        let finer = finer.map(|coarse| (coarse.objective, Some(coarse.samples)));
+        let scores = finer.chain([(self.objective, self.samples)]);
+        let stages = self.coarse.iter().zip(scores);
+        stages
+            .map(|(before, (objective, samples))| Local {
+                name: "refine",
+                objective,
+                samples,
+                finalists: Some(before.finalists),
+                settings: CoordinateAscentSettings {
+                    max_sweeps: settings.max_sweeps.min(REFINING_SWEEPS),
+                    ..settings.clone()
+                },
+            })
+            .collect()
     }
 }
 
 /// The best design found and how.
 pub(super) struct Optimum {
     pub design: Design,
-    /// Score at the end of each stage, with the records.
-    pub global: Record,
-    pub local: Option<Record>,
+    /// The stages in order, at least one.
+    pub stages: Vec<Record>,
 }
 
 impl Optimum {
     /// The stage that ended the search.
     pub fn last(&self) -> &Record {
-        self.local.as_ref().unwrap_or(&self.global)
+        &self.stages[self.stages.len() - 1]
     }
 
     pub fn score(&self) -> f64 {
@@ -68,20 +142,22 @@ impl Optimum {
     }
 
     pub fn evaluations(&self) -> u64 {
-        self.global.evaluations + self.local.as_ref().map_or(0, |local| local.evaluations)
+        self.stages.iter().map(|stage| stage.evaluations).sum()
     }
 
-    /// Progress of both stages, evaluations counted through.
+    /// Progress of all stages, evaluations counted through.
     pub fn history(&self) -> Vec<HistoryPoint> {
-        let mut history = self.global.history.clone();
-        if let Some(record) = &self.local {
-            history.extend(record.history.iter().map(|point| HistoryPoint {
-                evaluations: point.evaluations + self.global.evaluations,
+        let mut history = Vec::new();
+        let mut before = 0;
+        for stage in &self.stages {
+            history.extend(stage.history.iter().map(|point| HistoryPoint {
+                evaluations: point.evaluations + before,
                 ..*point
             }));
+            before += stage.evaluations;
         }
         let end = history.last().map(|point| HistoryPoint {
-            evaluations: self.evaluations(),
+            evaluations: before,
             mean: None,
             ..*point
         });
@@ -109,41 +185,53 @@ pub(super) fn search(
     saved: Option<Stage>,
     session: &Session,
 ) -> Result<Optimum, RunError> {
-    let (space, objective) = (terms.space, terms.objective);
-    let (global, polish) = match saved {
-        Some(Stage::Polish { before, snapshot }) => (Ended::known(before), Some(snapshot)),
+    let (mut stages, mut candidates, mut saved) = match saved {
+        // The snapshot holds the starts of its stage itself.
+        Some(Stage::Local { before, snapshot }) => (before, Vec::new(), Some(snapshot)),
         other => {
             let ended = global_stage(optimise, terms, seed, other, session)?;
-            (ended, None)
+            (vec![ended.record], ended.candidates, None)
         }
     };
-    let polishes = match &optimise.optimiser {
-        OptimiserSettings::Genetic(genetic) => genetic.polish,
-        // Coordinate ascent refines as it goes.
-        OptimiserSettings::CoordinateAscent(_) => false,
-    };
-    if !polishes {
-        let best = &global.candidates[0];
-        return Ok(Optimum {
-            design: space.design(&best.x),
-            global: global.record,
-            local: None,
-        });
+    let all = terms.local_stages(optimise);
+    for local in all.iter().skip(stages.len() - 1) {
+        let ended = local_stage(local, &candidates, &stages, seed, saved.take(), session)?;
+        candidates = ended.candidates;
+        stages.push(ended.record);
     }
-    let starts = polish_starts(&global.candidates, objective, seed);
-    let settings = terms.within_reason(Default::default());
-    let solver = CoordinateAscent::polish(&settings, seed ^ 1, starts);
-    let before = global.record.clone();
-    let wrap = move |snapshot| Stage::Polish {
+    Ok(Optimum {
+        design: terms.space.design(&candidates[0].x),
+        stages,
+    })
+}
+
+fn local_stage(
+    local: &Local,
+    candidates: &[Candidate],
+    before: &[Record],
+    seed: u64,
+    saved: Option<Box<Snapshot<CoordinateAscent>>>,
+    session: &Session,
+) -> Result<Ended, RunError> {
+    let starts = match local.finalists {
+        None => polish_starts(candidates, local.objective, seed),
+        Some(count) => apart(candidates, local.objective, count),
+    };
+    let seed = seed ^ before.len() as u64;
+    let solver = CoordinateAscent::polish(&local.settings, seed, starts);
+    let before = before.to_vec();
+    let wrap = move |snapshot| Stage::Local {
         before: before.clone(),
         snapshot,
     };
-    let local = stage(objective, solver, polish, wrap, session, "polishing")?;
-    Ok(Optimum {
-        design: space.design(&local.candidates[0].x),
-        global: global.record,
-        local: Some(local.record),
-    })
+    let name = match local.finalists {
+        None => "polishing",
+        Some(_) => "refining",
+    };
+    let mut ended = stage(local.objective, solver, saved, wrap, session, name)?;
+    ended.record.stage = local.name.into();
+    ended.record.samples = local.samples;
+    Ok(ended)
 }
 
 fn ascent_settings(ascent: &super::settings::CoordinateAscent) -> CoordinateAscentSettings {
@@ -154,6 +242,7 @@ fn ascent_settings(ascent: &super::settings::CoordinateAscent) -> CoordinateAsce
         finalists: ascent.finalists as usize,
         max_sweeps: ascent.max_sweeps as usize,
         tolerance: ascent.tolerance,
+        ..CoordinateAscentSettings::default()
     }
 }
 
@@ -176,9 +265,9 @@ fn global_stage(
     saved: Option<Stage>,
     session: &Session,
 ) -> Result<Ended, RunError> {
-    let objective = terms.objective;
+    let (objective, samples) = terms.first(optimise);
     let starts: Vec<Vec<f64>> = terms.start.iter().cloned().collect();
-    match (&optimise.optimiser, saved) {
+    let mut ended = match (&optimise.optimiser, saved) {
         (OptimiserSettings::CoordinateAscent(ascent), saved) => {
             let saved = match saved {
                 Some(Stage::Ascent(snapshot)) => Some(snapshot),
@@ -198,23 +287,16 @@ fn global_stage(
             let name = "genetic algorithm";
             stage(objective, solver, saved, Stage::Genetic, session, name)
         }
-    }
+    }?;
+    ended.record.stage = optimise.optimiser.method().into();
+    ended.record.samples = samples;
+    Ok(ended)
 }
 
 /// A stage that has run to its end.
 struct Ended {
     candidates: Vec<Candidate>,
     record: Record,
-}
-
-impl Ended {
-    /// A stage known from a checkpoint of the next one, which holds its starts itself.
-    fn known(record: Record) -> Ended {
-        Ended {
-            candidates: Vec::new(),
-            record,
-        }
-    }
 }
 
 fn stage<S>(
@@ -259,6 +341,8 @@ where
         return Err(anyhow::anyhow!("the search ended without a candidate").into());
     }
     let record = Record {
+        stage: String::new(),
+        samples: None,
         best_score: candidates[0].score,
         evaluations: solver.evaluations(),
         history: solver.history().to_vec(),
@@ -267,24 +351,32 @@ where
     Ok(Ended { candidates, record })
 }
 
-/// The best candidate, others far enough from it, and copies of the best a little off.
-fn polish_starts(candidates: &[Candidate], objective: &dyn Objective, seed: u64) -> Vec<Vec<f64>> {
-    let Some(best) = candidates.first() else {
-        return Vec::new();
-    };
+/// The best candidates that lie far enough from each other, `count` at most.
+fn apart(candidates: &[Candidate], objective: &dyn Objective, count: usize) -> Vec<Vec<f64>> {
     let space = objective.space();
-    let mut starts = vec![best.x.clone()];
     let spans: Vec<f64> = space.variables.iter().map(|v| v.upper - v.lower).collect();
     let far = |a: &[f64], b: &[f64]| {
         let difference = space.difference(a, b);
         let shares = difference.iter().zip(&spans).map(|(d, s)| (d / s).abs());
         shares.fold(0.0, f64::max) > SPREAD
     };
+    let mut starts: Vec<Vec<f64>> = Vec::new();
     for candidate in candidates.iter().take(20) {
-        if starts.len() < POLISHED - 2 && starts.iter().all(|x| far(x, &candidate.x)) {
+        if starts.len() < count && starts.iter().all(|x| far(x, &candidate.x)) {
             starts.push(candidate.x.clone());
         }
     }
+    starts
+}
+
+/// The best candidate, others far enough from it, and copies of the best a little off.
+fn polish_starts(candidates: &[Candidate], objective: &dyn Objective, seed: u64) -> Vec<Vec<f64>> {
+    let Some(best) = candidates.first() else {
+        return Vec::new();
+    };
+    let space = objective.space();
+    let spans: Vec<f64> = space.variables.iter().map(|v| v.upper - v.lower).collect();
+    let mut starts = apart(candidates, objective, POLISHED - 2);
     let mut generator = sampling::stream(seed, u64::MAX);
     while starts.len() < POLISHED {
         let mut off = |span: &f64| 2.0 * SPREAD * span * (generator.random::<f64>() - 0.5);

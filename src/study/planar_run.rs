@@ -7,6 +7,7 @@ use super::report_parts::{convergence, failures_label, formats, provenance_rows,
 use super::result::Finding;
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::{Optimise, Question, Study};
+use crate::optimiser::CoordinateAscentSettings;
 use crate::report::{self, Report, WorkspaceFigure, write_report};
 use crate::workspace::{ArtificialLimits, WorkspaceMap, WorkspaceSizes};
 use serde_json::{Value, json};
@@ -75,6 +76,9 @@ fn find(
         space: &space,
         objective: &objective,
         start: limits.map(|limits| space.point(&limits)),
+        samples: None,
+        coarse: Vec::new(),
+        short_step: CoordinateAscentSettings::default().short_step,
         max_sweeps: if pose { POSE_SWEEPS } else { usize::MAX },
         tolerance: if pose { POSE_TOLERANCE } else { 0.0 },
     };

@@ -129,17 +129,20 @@ pub(super) fn limits_deg(limits: &DegreeLimits) -> Value {
 
 /// How the search went.
 pub(super) fn search(optimum: &Optimum, optimise: &Optimise) -> Value {
-    let stage = |name: &str, record: &super::checkpoint::Record| {
-        json!({
-            "stage": name,
+    let stage = |record: &super::checkpoint::Record| {
+        let mut stage = json!({
+            "stage": record.stage,
             "score": record.best_score,
             "evaluations": record.evaluations,
             "converged": record.converged,
-        })
+        });
+        if let Some(samples) = record.samples {
+            stage["samples"] = json!(samples);
+        }
+        stage
     };
     let method = optimise.optimiser.method();
-    let mut stages = vec![stage(method, &optimum.global)];
-    stages.extend(optimum.local.as_ref().map(|local| stage("polish", local)));
+    let stages: Vec<Value> = optimum.stages.iter().map(stage).collect();
     let score = if optimise.search.links.is_some() {
         "S_F / S_0max"
     } else {

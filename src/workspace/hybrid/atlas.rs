@@ -85,13 +85,13 @@ pub struct Prediction {
 /// Pre-images of all samples of a plan.
 #[derive(Debug)]
 pub struct Atlas {
-    plan: SamplePlan,
+    pub(super) plan: SamplePlan,
     pub(super) joints: usize,
     /// Physical limits of every joint.
     pub(super) physical: Vec<Arc>,
     /// Half the distance between slices along every joint, radians.
     pub(super) slabs: Vec<f64>,
-    shards: Vec<ShardBytes>,
+    pub(super) shards: Vec<ShardBytes>,
 }
 
 /// What an atlas is built from.

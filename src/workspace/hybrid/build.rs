@@ -130,7 +130,7 @@ impl Packer {
         if let Some(focus) = &packing.focus {
             self.push_image(&focus.limits);
         }
-        let ranges = match self.inner.active.is_empty() {
+        let ranges = match self.inner.is_everything() {
             true => free,
             false => source.ranges_within(&sample.tool, &self.parts),
         };
@@ -148,7 +148,7 @@ impl Packer {
     /// ranges.
     fn push_curve(&mut self, curve: &CurveRef, counts: bool) {
         let mut flat = std::mem::take(&mut self.flat);
-        if self.inner.active.is_empty() {
+        if self.inner.is_everything() {
             flatten(curve, &mut self.line, &mut flat);
             self.curves += 1;
             self.keep(&flat);

@@ -1,12 +1,15 @@
 //! The parts of a polyline inside a box of joint limits.
 
+use super::lanes::{Lanes, Place, vertex};
 use super::turn16::Arc16;
 use smallvec::{SmallVec, smallvec};
 
 /// Joints that a box restricts, with their arcs; joints with the full circle are left out.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(super) struct Box16 {
-    pub active: SmallVec<[(usize, Arc16); 8]>,
+    active: SmallVec<[(usize, Arc16); 8]>,
+    /// The same joints, ready for the quick test; `None` if they are too many.
+    lanes: Option<Lanes>,
 }
 
 /// Parameters [from, to] of an edge that lie inside the box, in order.
@@ -15,9 +18,27 @@ pub(super) type Inside = SmallVec<[[f64; 2]; 2]>;
 impl Box16 {
     /// The box of the given arcs, `(joint, arc)` with joints counted from 0.
     pub fn new(arcs: impl IntoIterator<Item = (usize, Arc16)>) -> Box16 {
+        let restricts = |(_, arc): &(usize, Arc16)| !arc.is_full();
+        let active: SmallVec<[(usize, Arc16); 8]> = arcs.into_iter().filter(restricts).collect();
         Box16 {
-            active: arcs.into_iter().filter(|(_, arc)| !arc.is_full()).collect(),
+            lanes: Lanes::new(&active),
+            active,
         }
+    }
+
+    /// The same without the limits of `joint`.
+    pub fn without(&self, joint: usize) -> Box16 {
+        Box16::new(
+            self.active
+                .iter()
+                .copied()
+                .filter(|(other, _)| *other != joint),
+        )
+    }
+
+    /// Whether no joint is restricted.
+    pub fn is_everything(&self) -> bool {
+        self.active.is_empty()
     }
 
     #[inline]
@@ -52,6 +73,14 @@ impl Box16 {
         inside
     }
 
+    /// Where an edge lies, as far as a look at its ends tells.
+    #[inline]
+    fn place(&self, from: &[u16; 8], to: &[u16; 8]) -> Place {
+        self.lanes
+            .as_ref()
+            .map_or(Place::Unsure, |lanes| lanes.place(from, to))
+    }
+
     /// Calls `emit` with the number of every edge of `piece` that has a part inside, that part,
     /// and the edge's ends.
     #[inline]
@@ -61,20 +90,50 @@ impl Box16 {
         joints: usize,
         mut emit: impl FnMut(usize, [f64; 2], &'a [u16], &'a [u16]),
     ) {
-        let mut vertices = piece.chunks_exact(joints);
-        let Some(mut from) = vertices.next() else {
-            return;
-        };
-        for (index, to) in vertices.enumerate() {
-            for part in self.edge(from, to) {
+        let edges = (piece.len() / joints).saturating_sub(1);
+        let mut before = vertex(piece, 0);
+        for index in 0..edges {
+            let at = (index + 1) * joints;
+            let after = vertex(piece, at);
+            let place = self.place(&before, &after);
+            before = after;
+            if place == Place::Outside {
+                continue;
+            }
+            let (from, to) = (&piece[at - joints..at], &piece[at..at + joints]);
+            let parts = match place {
+                Place::Inside => smallvec![[0.0, 1.0]],
+                _ => self.edge(from, to),
+            };
+            for part in parts {
                 emit(index, part, from, to);
             }
-            from = to;
         }
         // A piece of a single vertex has no edge.
-        if piece.len() == joints && self.holds(from) {
-            emit(0, [0.0, 0.0], from, from);
+        if piece.len() == joints && self.holds(piece) {
+            emit(0, [0.0, 0.0], piece, piece);
         }
+    }
+
+    /// Whether any part of `piece` lies inside.
+    pub fn meets(&self, piece: &[u16], joints: usize) -> bool {
+        let edges = (piece.len() / joints).saturating_sub(1);
+        let mut before = vertex(piece, 0);
+        let meets = |index: usize| {
+            let at = (index + 1) * joints;
+            let after = vertex(piece, at);
+            let place = self.place(&before, &after);
+            before = after;
+            match place {
+                Place::Inside => true,
+                Place::Outside => false,
+                Place::Unsure => {
+                    let (from, to) = (&piece[at - joints..at], &piece[at..at + joints]);
+                    !self.edge(from, to).is_empty()
+                }
+            }
+        };
+        (0..edges).any(meets) || piece.len() == joints && self.holds(piece)
     }
 }
 
@@ -168,6 +227,44 @@ mod tests {
             let measure: f64 = parts.iter().map(|p| p[1] - p[0]).sum();
             let sampled = inside.count() as f64 / 1001.0;
             assert!((measure - sampled).abs() < 5e-3, "{measure} {sampled}");
+        }
+    }
+
+    /// The quick test of eight joints at once never changes what the exact one says.
+    #[test]
+    fn the_quick_test_changes_nothing() {
+        use rand::Rng;
+        let mut rng = crate::sampling::stream(6, 0);
+        for joints in [1, 3, 7, 8, 9] {
+            for _ in 0..400 {
+                let limits = (0..joints).map(|joint| {
+                    let width = [0, 900, 40_000, 65_530, 65_535][rng.random_range(0..5)];
+                    (joint, arc(rng.random(), width))
+                });
+                let limits = Box16::new(limits.collect::<Vec<_>>());
+                let slow = Box16 {
+                    lanes: None,
+                    ..limits.clone()
+                };
+                let reach: i32 = [100, 5_000, 32_768][rng.random_range(0..3)];
+                let mut at: Vec<u16> = (0..joints).map(|_| rng.random()).collect();
+                let mut piece = at.clone();
+                for _ in 0..rng.random_range(0..12) {
+                    for value in &mut at {
+                        *value = value.wrapping_add(rng.random_range(-reach..reach) as u16);
+                    }
+                    piece.extend(&at);
+                }
+                let parts = |limits: &Box16| {
+                    let mut all = Vec::new();
+                    limits.walk(&piece, joints, |k, part, from, to| {
+                        all.push((k, part, from.to_vec(), to.to_vec()));
+                    });
+                    all
+                };
+                assert_eq!(parts(&limits), parts(&slow));
+                assert_eq!(limits.meets(&piece, joints), !parts(&slow).is_empty());
+            }
         }
     }
 }

@@ -8,37 +8,13 @@
 use super::atlas::Atlas;
 use super::block::{BlockView, PoseRecord};
 use super::clip::Box16;
+use super::family::{Family, Growth};
 use super::score::{Limits16, Rule, covers};
 use super::turn16::{Arc16, STEP, angle_set};
 use crate::angle::{AngleSet, Arc};
 use crate::workspace::{ArtificialLimits, FailureSet};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
-
-/// How limits grow with their width.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Growth {
-    /// The upper limit stays: [ā − w, ā].
-    Lower,
-    /// The lower limit stays: [a̲, a̲ + w].
-    Upper,
-    /// The middle stays: [m − w/2, m + w/2].
-    Both,
-}
-
-/// One joint's limits with all their widths.
-struct Family {
-    /// The joint, from 0.
-    joint: usize,
-    growth: Growth,
-    /// The end or middle that stays, steps.
-    anchor: u16,
-    /// Half the distance between slices along the joint, steps. The joint is constant on a
-    /// slice, so the width of entry stays linear.
-    slab: f64,
-    /// Widths in steps, ascending.
-    widths: Vec<i32>,
-}
 
 impl Atlas {
     /// S_F for `limits` with those of `joint` (from 0) replaced by every width of `widths`
@@ -62,8 +38,7 @@ impl Atlas {
                 .collect()
         } else {
             let family = Family::new(limits, joint, growth, widths, self.slabs[joint]);
-            let mut rest = fixed.rest.clone();
-            rest.active.retain(|(other, _)| *other != joint);
+            let rest = fixed.rest.without(joint);
             self.views()
                 .map(|view| other_joint(&view, &fixed, &rest, &family))
                 .collect()
@@ -75,125 +50,6 @@ impl Atlas {
             }
         }
         Some(sums)
-    }
-}
-
-impl Family {
-    fn new(
-        limits: &ArtificialLimits,
-        joint: usize,
-        growth: Growth,
-        widths: &[f64],
-        slab: f64,
-    ) -> Family {
-        let limit = limits.joints()[joint];
-        let anchor = match growth {
-            Growth::Lower => limit.upper,
-            Growth::Upper => limit.lower,
-            Growth::Both => limit.centre(),
-        };
-        Family {
-            joint,
-            growth,
-            anchor: super::turn16::quantise(anchor),
-            slab: slab / STEP,
-            widths: widths
-                .iter()
-                .map(|width| (width / STEP).round() as i32)
-                .collect(),
-        }
-    }
-
-    /// Number of widths up to and with the largest at which the limits still lie in `range`.
-    fn fitting(&self, range: &[Arc16]) -> usize {
-        let largest = range.iter().filter_map(|arc| self.room(*arc)).max();
-        largest.map_or(0, |room| {
-            self.widths.partition_point(|&width| width <= room)
-        })
-    }
-
-    /// The largest width at which the limits lie in `arc`.
-    fn room(&self, arc: Arc16) -> Option<i32> {
-        if arc.is_full() {
-            return Some(65_536);
-        }
-        let below = i32::from(self.anchor.wrapping_sub(arc.start));
-        let above = i32::from(arc.width) - below;
-        (above >= 0).then(|| match self.growth {
-            Growth::Lower => below,
-            Growth::Upper => above,
-            Growth::Both => 2 * below.min(above),
-        })
-    }
-
-    /// The width at which a slice enters that would enter at `width` if it had no thickness.
-    fn thick(&self, width: f64) -> f64 {
-        let sides = if self.growth == Growth::Both {
-            2.0
-        } else {
-            1.0
-        };
-        if self.slab > 0.0 {
-            (width - sides * self.slab).max(0.0)
-        } else {
-            width
-        }
-    }
-
-    /// Calls `take` with pieces of an edge part on which the width of entry is linear: parameters
-    /// [u, v] of the edge and the widths at both.
-    fn entries(
-        &self,
-        from: u16,
-        to: u16,
-        part: [f64; 2],
-        mut take: impl FnMut([f64; 2], [f64; 2]),
-    ) {
-        let step = f64::from(to.wrapping_sub(from) as i16);
-        // Distance from the anchor in the direction of growth, in [0, 65536) at the start.
-        let (start, slope) = match self.growth {
-            Growth::Lower => (self.anchor.wrapping_sub(from), -step),
-            _ => (from.wrapping_sub(self.anchor), step),
-        };
-        let x = |u: f64| f64::from(start) + u * slope;
-        // The entry width has kinks where x passes a multiple of a (half) turn.
-        let kink = if self.growth == Growth::Both {
-            32_768.0
-        } else {
-            65_536.0
-        };
-        let (mut u, end) = (part[0], part[1]);
-        loop {
-            let turn = (x(0.5 * (u + end.min(u + 1e-3))) / kink).floor();
-            let next = if slope > 0.0 { turn + 1.0 } else { turn };
-            let mut v = end;
-            if slope != 0.0 {
-                let crossing = (next * kink - f64::from(start)) / slope;
-                if crossing > u && crossing < end {
-                    v = crossing;
-                }
-            }
-            let width = |u: f64| {
-                // A kink is hit exactly: width 0 must be entered at width 0.
-                let y = x(u) - turn * kink;
-                let y = if (y - (y / kink).round() * kink).abs() < 1e-6 {
-                    (y / kink).round() * kink
-                } else {
-                    y
-                };
-                match self.growth {
-                    Growth::Both if turn.rem_euclid(2.0) == 0.0 => self.thick(2.0 * y),
-                    Growth::Both => self.thick(2.0 * (kink - y)),
-                    _ if self.slab > 0.0 && y > kink - self.slab => 0.0,
-                    _ => self.thick(y),
-                }
-            };
-            take([u, v], [width(u), width(v)]);
-            if v >= end {
-                return;
-            }
-            u = v;
-        }
     }
 }
 
@@ -308,6 +164,7 @@ fn collect(
     bins: &mut [Vec<Arc>],
 ) {
     let widths = &family.widths[..bins.len()];
+    let mut hint = 0;
     for piece in view.pieces(pose) {
         let mut run = Run::default();
         rest.walk(piece, view.joints, |_, part, from, to| {
@@ -320,8 +177,13 @@ fn collect(
                     let share = (width - start) / (end - start);
                     theta(u + share.clamp(0.0, 1.0) * (v - u))
                 };
-                let bin_of = |width: f64| widths.partition_point(|&w| f64::from(w) < width);
-                let (mut bin, last) = (bin_of(start), bin_of(end));
+                let (mut bin, last) = (bin_of(widths, start, hint), bin_of(widths, end, hint));
+                hint = last;
+                if bin == bins.len() && last == bin {
+                    // Beyond all widths.
+                    std::mem::take(&mut run).finish(bins);
+                    return;
+                }
                 let mut begin = theta(u);
                 while bin < last {
                     let stop = at(widths.get(bin).copied().map_or(end, f64::from));
@@ -338,6 +200,17 @@ fn collect(
         });
         run.finish(bins);
     }
+}
+
+/// The first of `widths` that is no less than `width`, looked for at `hint` first: neighbouring
+/// edges enter at much the same width.
+#[inline]
+fn bin_of(widths: &[i32], width: f64, hint: usize) -> usize {
+    let before = hint == 0 || f64::from(widths[hint - 1]) < width;
+    if before && widths.get(hint).is_none_or(|&w| width <= f64::from(w)) {
+        return hint;
+    }
+    widths.partition_point(|&w| f64::from(w) < width)
 }
 
 /// A connected part of a curve that enters the box at one width.
@@ -363,7 +236,11 @@ impl Default for Run {
 impl Run {
     /// Appends the way from `begin` to `end`, radians modulo turns, which enters with `bin`.
     fn extend(&mut self, bin: usize, begin: f64, end: f64, bins: &mut [Vec<Arc>]) {
-        let shift = ((self.end - begin) / TAU).round() * TAU;
+        let gap = self.end - begin;
+        let shift = match gap.abs() < 1e-9 {
+            true => 0.0,
+            false => (gap / TAU).round() * TAU,
+        };
         let joins = bin == self.bin && (begin + shift - self.end).abs() < 1e-9;
         if !joins {
             self.finish(bins);

@@ -236,16 +236,10 @@ impl Limits16 {
 
     /// Whether any part of the pre-image lies in the box of the joints from 2 on.
     pub fn is_ever_inside(&self, view: &BlockView, pose: &PoseRecord) -> bool {
-        self.rest.active.is_empty() && pose.pieces > 0
-            || view.pieces(pose).any(|piece| {
-                let mut vertices = piece.chunks_exact(view.joints);
-                let mut from = vertices.next().unwrap_or_default();
-                vertices.any(|to| {
-                    let inside = !self.rest.edge(from, to).is_empty();
-                    from = to;
-                    inside
-                })
-            })
+        self.rest.is_everything() && pose.pieces > 0
+            || view
+                .pieces(pose)
+                .any(|piece| self.rest.meets(piece, view.joints))
     }
 }
 

@@ -1,0 +1,181 @@
+//! One joint's limits with all their widths: when they take in an angle, and how wide they may be.
+
+use super::turn16::{Arc16, STEP, quantise};
+use crate::workspace::ArtificialLimits;
+
+/// How limits grow with their width.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Growth {
+    /// The upper limit stays: [ā − w, ā].
+    Lower,
+    /// The lower limit stays: [a̲, a̲ + w].
+    Upper,
+    /// The middle stays: [m − w/2, m + w/2].
+    Both,
+}
+
+/// One joint's limits with all their widths.
+pub(super) struct Family {
+    /// The joint, from 0.
+    pub joint: usize,
+    growth: Growth,
+    /// The end or middle that stays, steps.
+    anchor: u16,
+    /// Half the distance between slices along the joint, steps. The joint is constant on a
+    /// slice, so the width of entry stays linear.
+    slab: f64,
+    /// Widths in steps, ascending.
+    pub widths: Vec<i32>,
+}
+
+impl Family {
+    pub fn new(
+        limits: &ArtificialLimits,
+        joint: usize,
+        growth: Growth,
+        widths: &[f64],
+        slab: f64,
+    ) -> Family {
+        let limit = limits.joints()[joint];
+        let anchor = match growth {
+            Growth::Lower => limit.upper,
+            Growth::Upper => limit.lower,
+            Growth::Both => limit.centre(),
+        };
+        Family {
+            joint,
+            growth,
+            anchor: quantise(anchor),
+            slab: slab / STEP,
+            widths: widths
+                .iter()
+                .map(|width| (width / STEP).round() as i32)
+                .collect(),
+        }
+    }
+
+    /// Number of widths up to and with the largest at which the limits still lie in `range`.
+    pub fn fitting(&self, range: &[Arc16]) -> usize {
+        let largest = range.iter().filter_map(|arc| self.room(*arc)).max();
+        largest.map_or(0, |room| {
+            self.widths.partition_point(|&width| width <= room)
+        })
+    }
+
+    /// The largest width at which the limits lie in `arc`.
+    fn room(&self, arc: Arc16) -> Option<i32> {
+        if arc.is_full() {
+            return Some(65_536);
+        }
+        let below = i32::from(self.anchor.wrapping_sub(arc.start));
+        let above = i32::from(arc.width) - below;
+        (above >= 0).then(|| match self.growth {
+            Growth::Lower => below,
+            Growth::Upper => above,
+            Growth::Both => 2 * below.min(above),
+        })
+    }
+
+    /// The width at which a slice enters that would enter at `width` if it had no thickness.
+    fn thick(&self, width: f64) -> f64 {
+        let sides = if self.growth == Growth::Both {
+            2.0
+        } else {
+            1.0
+        };
+        if self.slab > 0.0 {
+            (width - sides * self.slab).max(0.0)
+        } else {
+            width
+        }
+    }
+
+    /// Widths at which both ends of a whole edge enter, if it passes no kink: the usual case.
+    #[inline]
+    fn straight(&self, from: u16, to: u16, part: [f64; 2]) -> Option<[f64; 2]> {
+        if part != [0.0, 1.0] || self.slab > 0.0 {
+            return None;
+        }
+        let step = i32::from(to.wrapping_sub(from) as i16);
+        let (x, end) = match self.growth {
+            Growth::Lower => {
+                let x = i32::from(self.anchor.wrapping_sub(from));
+                (x, x - step)
+            }
+            _ => {
+                let x = i32::from(from.wrapping_sub(self.anchor));
+                (x, x + step)
+            }
+        };
+        let widths = match (self.growth, x < 32_768 && end < 32_768) {
+            (Growth::Both, true) => [2 * x, 2 * end],
+            (Growth::Both, false) if x >= 32_768 && end >= 32_768 => {
+                [2 * (65_536 - x), 2 * (65_536 - end)]
+            }
+            (Growth::Both, false) => return None,
+            _ => [x, end],
+        };
+        (0..65_536).contains(&end).then(|| widths.map(f64::from))
+    }
+
+    /// Calls `take` with pieces of an edge part on which the width of entry is linear: parameters
+    /// [u, v] of the edge and the widths at both.
+    #[inline]
+    pub fn entries(
+        &self,
+        from: u16,
+        to: u16,
+        part: [f64; 2],
+        mut take: impl FnMut([f64; 2], [f64; 2]),
+    ) {
+        if let Some(widths) = self.straight(from, to, part) {
+            take(part, widths);
+            return;
+        }
+        let step = f64::from(to.wrapping_sub(from) as i16);
+        // Distance from the anchor in the direction of growth, in [0, 65536) at the start.
+        let (start, slope) = match self.growth {
+            Growth::Lower => (self.anchor.wrapping_sub(from), -step),
+            _ => (from.wrapping_sub(self.anchor), step),
+        };
+        let x = |u: f64| f64::from(start) + u * slope;
+        // The entry width has kinks where x passes a multiple of a (half) turn.
+        let kink = if self.growth == Growth::Both {
+            32_768.0
+        } else {
+            65_536.0
+        };
+        let (mut u, end) = (part[0], part[1]);
+        loop {
+            let turn = (x(0.5 * (u + end.min(u + 1e-3))) / kink).floor();
+            let next = if slope > 0.0 { turn + 1.0 } else { turn };
+            let mut v = end;
+            if slope != 0.0 {
+                let crossing = (next * kink - f64::from(start)) / slope;
+                if crossing > u && crossing < end {
+                    v = crossing;
+                }
+            }
+            let width = |u: f64| {
+                // A kink is hit exactly: width 0 must be entered at width 0.
+                let y = x(u) - turn * kink;
+                let y = if (y - (y / kink).round() * kink).abs() < 1e-6 {
+                    (y / kink).round() * kink
+                } else {
+                    y
+                };
+                match self.growth {
+                    Growth::Both if turn.rem_euclid(2.0) == 0.0 => self.thick(2.0 * y),
+                    Growth::Both => self.thick(2.0 * (kink - y)),
+                    _ if self.slab > 0.0 && y > kink - self.slab => 0.0,
+                    _ => self.thick(y),
+                }
+            };
+            take([u, v], [width(u), width(v)]);
+            if v >= end {
+                return;
+            }
+            u = v;
+        }
+    }
+}
