@@ -203,10 +203,11 @@ fn parts_make_up_the_whole() {
 
     // The search's own samples flatter its optimum; the headline is of others.
     let search = &whole["search"];
-    assert_eq!(
-        search["score_on_search_sample"],
-        search["stages"][0]["score"]
-    );
+    let stages = search["stages"].as_array().unwrap();
+    let samples: Vec<f64> = stages.iter().map(|s| number(&s["samples"])).collect();
+    assert_eq!(samples, [752.0, 2992.0]);
+    assert_eq!(search["score_on_search_sample"], stages[1]["score"]);
+    assert_eq!(place.result("serial", &["--threads", "1"]), whole);
     let (seen, size) = (
         &search["score_on_search_sample"],
         &whole["size"]["fault_tolerant"],

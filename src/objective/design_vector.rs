@@ -107,6 +107,11 @@ impl DesignSpace {
         design
     }
 
+    /// Whether the limits of `joint` (from 0) stay symmetric about zero.
+    pub fn is_centred(&self, joint: usize) -> bool {
+        self.centred[joint]
+    }
+
     /// The box.
     pub fn space(&self) -> &SearchSpace {
         &self.space

@@ -2,6 +2,7 @@
 
 use super::hybrid_arm::{Needed, Samples, check_cache};
 use super::hybrid_result::HybridFinding;
+use super::hybrid_sensitivity::sensitivity;
 use super::hybrid_settings::Hybrid;
 use super::optimise::{Coarse, Optimum, Terms, search};
 use super::parts::parts;
@@ -12,8 +13,8 @@ use super::settings::{DegreeLimits, Optimise, Question, Study};
 use super::spatial_picture::Picture;
 use crate::design::JointKind;
 use crate::objective::{DesignSpace, HybridObjective};
-use crate::report::{self, Report, write_report};
-use crate::workspace::hybrid::Atlas;
+use crate::report::{self, Report, Sensitivity, write_report};
+use crate::workspace::hybrid::{Atlas, Rule};
 use crate::workspace::{ArtificialLimits, Estimate, WorkspaceSizes};
 use serde_json::{Value, json};
 use std::time::Instant;
@@ -85,6 +86,7 @@ struct Run<'a> {
 struct Searched {
     optimum: Optimum,
     size: Estimate,
+    sensitivity: Option<Sensitivity>,
 }
 
 impl Run<'_> {
@@ -141,7 +143,13 @@ impl Run<'_> {
         let saved = self.ready.saved.take();
         let optimum = search(optimise, &terms, study.seed, saved, &self.ready.session)?;
         let sizes = atlas.sizes(&optimum.design.limits, &study.failures, rule);
+        let draw = || {
+            let (limits, unit) = (&optimum.design.limits, study.task.unit());
+            sensitivity(atlas, &space, limits, &study.failures, unit)
+        };
+        let draws = study.report.figures && rule == Rule::Definition;
         Ok(Searched {
+            sensitivity: draws.then(draw).flatten(),
             optimum,
             size: sizes.fault_tolerant,
         })
@@ -190,6 +198,7 @@ impl Run<'_> {
             report.workspace = picture.planar(&robot.name);
             report.figures = figures.iter().map(|figure| figure.as_ref()).collect();
             report.points = picture.spatial();
+            report.sensitivity = searched.and_then(|searched| searched.sensitivity.clone());
             write_report(&report, &self.options.out, &formats(study))
                 .map_err(anyhow::Error::from)?;
         } else {

@@ -11,6 +11,7 @@ mod folder;
 mod hybrid_arm;
 mod hybrid_result;
 mod hybrid_run;
+mod hybrid_sensitivity;
 mod hybrid_settings;
 mod hybrid_table;
 mod limits;

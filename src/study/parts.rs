@@ -4,14 +4,22 @@
 //! samples moves its top, so the best are climbed again with more samples, and last with all.
 
 use super::settings::{Optimise, OptimiserSettings};
+use crate::design::TaskSpace;
 use crate::workspace::hybrid::Atlas;
 
 /// Parts of the samples: their share is one in that many; then how many of the best found on
 /// them go on.
-const PARTS: [(u64, usize); 2] = [(16, 4), (4, 2)];
+const PARTS: [(u64, usize); 2] = [(16, 6), (4, 3)];
 
-/// Fewest samples of a part: fewer would mistake noise for mountains.
-const FEWEST: u64 = 500;
+/// Fewest samples of a part, which would otherwise mistake noise for mountains: the more
+/// dimensions they fill, the more it takes. The 7R arm's best limits are missed with 6000.
+fn fewest(task: TaskSpace) -> u64 {
+    match task {
+        TaskSpace::PlanarPosition | TaskSpace::SpatialPosition => 500,
+        TaskSpace::PlanarPose => 2000,
+        TaskSpace::SpatialPose => 10_000,
+    }
+}
 
 /// A part of an atlas.
 pub(super) struct Part {
@@ -28,7 +36,7 @@ pub(super) fn parts(optimise: &Optimise, atlas: &Atlas) -> Vec<Part> {
     }
     let part = |&(every, finalists): &(u64, usize)| {
         let samples = atlas.plan().kept(every);
-        (samples >= FEWEST).then(|| Part {
+        (samples >= fewest(atlas.plan().task)).then(|| Part {
             atlas: atlas.thinned(every),
             samples,
             finalists,

@@ -14,10 +14,10 @@ use std::f64::consts::{PI, TAU};
 const POSTURES: usize = 4000;
 
 /// Points of a sensitivity curve besides the optimum.
-const CURVE_POINTS: usize = 60;
+pub(super) const CURVE_POINTS: usize = 60;
 
 /// A sensitivity curve moves a limit this far to either side (radians).
-const CURVE_RANGE: f64 = PI / 2.0;
+pub(super) const CURVE_RANGE: f64 = PI / 2.0;
 
 /// Joint angles (between links) inside the limits with the end point in the fault-tolerant
 /// workspace, as far from its limits and as stretched out as a random search finds; the middle of

@@ -17,7 +17,7 @@ use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Samples in a shard, the unit of work that a killed build may lose.
-const SHARD: u64 = 1024;
+pub(super) const SHARD: u64 = 1024;
 
 /// Changes whenever the content of a block changes for the same question.
 const FORMAT: u32 = 2;

@@ -101,11 +101,11 @@ impl Box16 {
                 continue;
             }
             let (from, to) = (&piece[at - joints..at], &piece[at..at + joints]);
-            let parts = match place {
-                Place::Inside => smallvec![[0.0, 1.0]],
-                _ => self.edge(from, to),
-            };
-            for part in parts {
+            if place == Place::Inside {
+                emit(index, [0.0, 1.0], from, to);
+                continue;
+            }
+            for part in self.edge(from, to) {
                 emit(index, part, from, to);
             }
         }

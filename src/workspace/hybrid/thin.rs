@@ -1,6 +1,6 @@
 //! A part of an atlas, on which a search scouts.
 
-use super::atlas::Atlas;
+use super::atlas::{Atlas, SHARD};
 use super::block::{BlockBuilder, BlockView};
 use super::plan::{SamplePlan, Sampling};
 use super::store::ShardBytes;
@@ -42,15 +42,21 @@ impl Atlas {
     /// For scoring alone: the standard errors of a grid know nothing of samples left out.
     pub fn thinned(&self, every: u64) -> Atlas {
         let scale = self.plan.len() as f64 / self.plan.kept(every).max(1) as f64;
-        let thin = |shards: &[ShardBytes]| {
+        let chunk = every.max(1);
+        let thin = |(number, shards): (usize, &[ShardBytes])| {
             let mut block = BlockBuilder::new(self.joints);
             for shard in shards {
                 if let Some(view) = BlockView::new(shard.block()) {
                     copy(&view, &mut block, scale, |index| {
                         self.plan.keeps(index, every)
                     });
+                    block.seeds += view.seeds;
                 }
             }
+            let first = number as u64 * chunk * SHARD;
+            let last = (first + chunk * SHARD).min(self.plan.len());
+            let kept = (first..last).filter(|&index| self.plan.keeps(index, every));
+            block.samples = kept.count() as u32;
             ShardBytes::from_bytes(&block.to_bytes())
         };
         Atlas {
@@ -60,7 +66,8 @@ impl Atlas {
             slabs: self.slabs.clone(),
             shards: self
                 .shards
-                .par_chunks(every.max(1) as usize)
+                .par_chunks(chunk as usize)
+                .enumerate()
                 .map(thin)
                 .collect(),
         }
@@ -76,6 +83,8 @@ fn copy(view: &BlockView, into: &mut BlockBuilder, scale: f64, keeps: impl Fn(u6
         let ranges = view.ranges(index).map(<[_]>::to_vec);
         let (sound, weight) = (pose.sound == 1, pose.weight * scale);
         into.finish_pose(pose.sample, pose.stratum, weight, sound, ranges);
-        into.samples += 1;
     }
 }
+
+#[cfg(test)]
+mod tests;
