@@ -20,7 +20,7 @@ pub enum Format {
 /// A figure of a report.
 pub trait Figure: std::fmt::Debug {
     /// Stem of its files, as in `workspace.png`.
-    fn name(&self) -> &'static str;
+    fn name(&self) -> &str;
     /// A sentence that tells what is to be seen, as plain text.
     fn caption(&self) -> String;
     /// Size when printed.

@@ -36,7 +36,7 @@ ul.notes { background: #fff7e0; padding: .6rem 1rem .6rem 2rem; }
 /// The page of a report with its figures.
 pub fn page(report: &Report, figures: &[InlineFigure]) -> String {
     let body = html! {
-        (heading(report))
+        (heading(&report.title, &report.study, &report.robot, &report.source, report.links))
         (summary(report))
         (notes(&report.notes))
         h2 { "Artificial joint limits" }
@@ -94,13 +94,20 @@ pub(super) fn sources(
     }
 }
 
-fn heading(report: &Report) -> Markup {
+/// The start of every page; without `lengths`, the links' lengths in metres are not told.
+pub(super) fn heading(
+    title: &str,
+    study: &str,
+    robot: &str,
+    source: &str,
+    lengths: &[f64],
+) -> Markup {
     html! {
-        h1 { (report.title) }
+        h1 { (title) }
         p.sub {
-            "Study " strong { (report.study) } ", robot " strong { (report.robot) }
-            @if !report.source.is_empty() { " (" (report.source) ")" }
-            @if !report.links.is_empty() { ", links " (links(report.links)) " m" }
+            "Study " strong { (study) } ", robot " strong { (robot) }
+            @if !source.is_empty() { " (" (source) ")" }
+            @if !lengths.is_empty() { ", links " (links(lengths)) " m" }
         }
     }
 }

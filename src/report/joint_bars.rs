@@ -3,10 +3,11 @@
 
 use super::canvas::Canvas;
 use super::label::Label;
-use super::manifold_figure::{SIDE, bar, limit_parts, parts, quarters, upright_grid};
+use super::manifold_figure::{SIDE, bar, limit_parts, parts};
 use super::number::joint_symbol;
 use super::panel::Panel;
 use super::style::{BLUE, DOUBLE_COLUMN, HALF_CAPITAL, MARGIN, ORANGE, SMALL};
+use super::ticks;
 use crate::angle::AngleSet;
 use crate::workspace::ArtificialLimits;
 use plotters::style::text_anchor::HPos;
@@ -48,7 +49,7 @@ pub(super) fn draw(
     Label::new(name, SMALL)
         .bold()
         .draw(canvas, [panel.left, panel.top - 4.5]);
-    upright_grid(canvas, panel, &quarters());
+    panel.upright_grid(canvas, &ticks::quarters());
     for (joint, range) in ranges.iter().enumerate() {
         let top = panel.top + joint as f64 * ROW;
         let symbol = joint_symbol(joint + 1);
@@ -71,6 +72,6 @@ pub(super) fn draw(
             canvas.outline(&corners, 0.4, ORANGE);
         }
     }
-    panel.axes(canvas, &quarters(), &[], true);
+    panel.axes(canvas, &ticks::quarters(), &[], true);
     panel.x_label(canvas, "joint angle (deg)");
 }

@@ -121,6 +121,7 @@ pub(super) enum Swatch {
     Thick(RGBAColor),
     Dot(RGBAColor),
     Cross(RGBAColor),
+    Diamond(RGBAColor),
 }
 
 /// Height of one row of a legend, points.
@@ -156,7 +157,7 @@ pub(super) fn legend(
     }
 }
 
-fn draw_swatch(canvas: &mut Canvas, swatch: Swatch, [x, y]: Point) {
+pub(super) fn draw_swatch(canvas: &mut Canvas, swatch: Swatch, [x, y]: Point) {
     match swatch {
         Swatch::Area(fill, edge) => {
             let corners = rectangle(x, y - 3.0, 12.0, 6.0);
@@ -175,6 +176,11 @@ fn draw_swatch(canvas: &mut Canvas, swatch: Swatch, [x, y]: Point) {
             let (left, right) = (x + 3.8, x + 8.2);
             canvas.stroke(&[[left, y - 2.2], [right, y + 2.2]], 0.9, colour);
             canvas.stroke(&[[left, y + 2.2], [right, y - 2.2]], 0.9, colour);
+        }
+        Swatch::Diamond(colour) => {
+            let (middle, half) = (x + 6.0, 1.7);
+            let corners = [[0.0, -half], [half, 0.0], [0.0, half], [-half, 0.0]];
+            canvas.fill(&corners.map(|c| [middle + c[0], y + c[1]]), colour);
         }
         Swatch::Dashed(colour) => dashed(canvas, [x, y], [x + 12.0, y], 0.8, colour),
     }

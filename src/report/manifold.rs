@@ -90,17 +90,31 @@ pub(super) fn wrapped<const N: usize>(
     points: &[Vec<f64>],
     joints: [usize; N],
 ) -> Vec<Vec<[f64; N]>> {
-    let levels = joints.map(|joint| (joint, PI));
+    wrapped_angles(points, joints.map(|joint| (joint, true)))
+}
+
+/// [`wrapped`] of columns that are angles (`true`) or lengths, which stay as they are.
+pub(super) fn wrapped_angles<const N: usize>(
+    points: &[Vec<f64>],
+    columns: [(usize, bool); N],
+) -> Vec<Vec<[f64; N]>> {
+    let angles = columns.iter().filter(|(_, is_angle)| *is_angle);
+    let levels: Vec<(usize, f64)> = angles.map(|(column, _)| (*column, PI)).collect();
     let mut lines: Vec<(Vec<[f64; N]>, [f64; N])> = Vec::new();
     for pair in points.windows(2) {
         for [from, to] in cut(&pair[0], &pair[1], &levels) {
             let inner = middle(&from, &to);
-            let turns = joints.map(|joint| inner[joint] - wrap(inner[joint]));
+            let turns = columns.map(|(column, is_angle)| match is_angle {
+                true => inner[column] - wrap(inner[column]),
+                false => 0.0,
+            });
             let seen = |point: &[f64]| -> [f64; N] {
-                std::array::from_fn(|c| {
-                    (point[joints[c]] - turns[c])
-                        .to_degrees()
-                        .clamp(-180.0, 180.0)
+                std::array::from_fn(|c| match columns[c] {
+                    (column, true) => {
+                        let degrees = (point[column] - turns[c]).to_degrees();
+                        degrees.clamp(-180.0, 180.0)
+                    }
+                    (column, false) => point[column],
                 })
             };
             // Turns are multiples of 2π up to round-off.

@@ -13,7 +13,7 @@ use super::style::{
     translucent,
 };
 use super::table::{Table, cell};
-use super::ticks::{self, Tick};
+use super::ticks;
 use crate::angle::{AngleSet, Arc, wrap};
 use crate::workspace::ArtificialLimits;
 use plotters::style::RGBAColor;
@@ -192,9 +192,9 @@ impl ManifoldFigure<'_> {
         Label::new(&name, SMALL)
             .bold()
             .draw(canvas, [panel.left, panel.top - 4.5]);
-        let quarters = quarters();
+        let quarters = ticks::quarters();
         panel.grid(canvas, &quarters);
-        upright_grid(canvas, &panel, &quarters);
+        panel.upright_grid(canvas, &quarters);
         self.draw_box(canvas, &panel, joint);
         draw_lines(canvas, cut, |points| {
             let lines = wrapped(points, [0, joint]);
@@ -205,7 +205,7 @@ impl ManifoldFigure<'_> {
         let x_ticks = if is_last {
             quarters.clone()
         } else {
-            unlabelled(&quarters)
+            ticks::unlabelled(&quarters)
         };
         panel.axes(canvas, &x_ticks, &quarters, column == 0);
         if is_last {
@@ -306,27 +306,6 @@ pub(super) fn parts(arc: &Arc) -> Vec<[f64; 2]> {
     match end > 180.0 {
         true => vec![[start, 180.0], [-180.0, end - 360.0]],
         false => vec![[start, end]],
-    }
-}
-
-/// Ticks at multiples of 90°.
-pub(super) fn quarters() -> Vec<Tick> {
-    ticks::degrees(-180.0, 180.0, 4)
-}
-
-fn unlabelled(ticks: &[Tick]) -> Vec<Tick> {
-    let bare = |tick: &Tick| Tick {
-        value: tick.value,
-        label: String::new(),
-    };
-    ticks.iter().map(bare).collect()
-}
-
-/// Light lines down the panel at the ticks of x.
-pub(super) fn upright_grid(canvas: &mut Canvas, panel: &Panel, ticks: &[Tick]) {
-    for tick in ticks {
-        let ends = panel.y.map(|y| panel.at(tick.value, y));
-        canvas.stroke(&ends, 0.4, super::style::GRID);
     }
 }
 

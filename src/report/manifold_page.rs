@@ -1,6 +1,6 @@
 //! `report.html` of a study of one pose.
 
-use super::html::{InlineFigure, document, inlined, notes, sources, symbol};
+use super::html::{InlineFigure, document, heading, inlined, notes, sources, symbol};
 use super::manifold_report::{CURVES, JointRow, ManifoldReport, ManifoldRow, PoseVerdict};
 use super::number::{degrees, exact_degrees, joint_symbol, plain, rounded};
 use crate::angle::AngleSet;
@@ -10,7 +10,7 @@ use std::f64::consts::{PI, TAU};
 /// The page of a report on one pose with its figures.
 pub(super) fn manifold_page(report: &ManifoldReport, figures: &[InlineFigure]) -> String {
     let body = html! {
-        (heading(report))
+        (heading(&report.title, &report.study, &report.robot, &report.source, &[]))
         (summary(report))
         (notes(&report.notes))
         @if !report.manifolds.is_empty() {
@@ -33,16 +33,6 @@ pub(super) fn manifold_page(report: &ManifoldReport, figures: &[InlineFigure]) -
         (sources(&report.study_toml, &report.provenance, &report.result_json))
     };
     document(&report.title, &body)
-}
-
-fn heading(report: &ManifoldReport) -> Markup {
-    html! {
-        h1 { (report.title) }
-        p.sub {
-            "Study " strong { (report.study) } ", robot " strong { (report.robot) }
-            @if !report.source.is_empty() { " (" (report.source) ")" }
-        }
-    }
 }
 
 fn summary(report: &ManifoldReport) -> Markup {

@@ -1,15 +1,14 @@
 //! The report of a study of one pose: all its files in one directory.
 
 use super::error::ReportError;
-use super::figure::{Figure, Format, figure_png, write_rendered};
-use super::html::InlineFigure;
+use super::figure::{Figure, Format};
 use super::manifold_figure::ManifoldFigure;
 use super::manifold_page::manifold_page;
 use super::manifold_view::ManifoldFigure3d;
 use super::points::write_curves;
 use super::result_files::{write_json, write_text};
-use super::style::COLUMN;
 use super::table::Table;
+use super::write::write_figures;
 use crate::angle::AngleSet;
 use std::path::{Path, PathBuf};
 
@@ -116,18 +115,10 @@ pub fn write_manifold_report(
     formats: &[Format],
 ) -> Result<Vec<PathBuf>, ReportError> {
     let path = |name: &str| directory.join(name);
-    let (mut written, mut inline) = (Vec::new(), Vec::new());
     let flat = report.figure.as_ref().map(|f| f as &dyn Figure);
     let in_space = report.view.as_ref().map(|f| f as &dyn Figure);
-    for figure in flat.into_iter().chain(in_space) {
-        let png = figure_png(figure)?;
-        written.extend(write_rendered(figure, &png, directory, formats)?);
-        inline.push(InlineFigure {
-            png,
-            caption: figure.caption(),
-            is_wide: figure.size().width > COLUMN,
-        });
-    }
+    let figures = flat.into_iter().chain(in_space);
+    let (mut written, inline) = write_figures(figures, directory, formats)?;
     let vertices = path("manifolds.csv");
     write_text(&vertices, &report.vertices.to_csv()?)?;
     if !written.contains(&vertices) {

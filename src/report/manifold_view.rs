@@ -6,11 +6,12 @@ use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
 use super::manifold::{CriticalPoint, ManifoldCurve, Piece, is_drawable, pieces, wrapped};
 use super::manifold_figure::{
-    BOX, COLOURS, Marks, WIDTHS, cross, dot, entries, limit_parts, quarters, table,
+    BOX, COLOURS, Marks, WIDTHS, cross, dot, entries, limit_parts, table,
 };
 use super::number::joint_symbol;
 use super::style::{COLUMN, GREY, GRID, MARGIN, ORANGE, TITLE, WHITE, translucent};
 use super::table::Table;
+use super::ticks;
 use crate::angle::wrap;
 use crate::workspace::ArtificialLimits;
 use plotters::style::RGBAColor;
@@ -112,7 +113,7 @@ impl Figure for ManifoldFigure3d<'_> {
             .map(|joint| format!("{} (deg)", joint_symbol(joint)));
         let axes = names.each_ref().map(|label| Axis {
             label,
-            ticks: quarters(),
+            ticks: ticks::quarters(),
         });
         for line in scene.back(&axes) {
             canvas.stroke(&line.map(|p| scene.at(p)), 0.4, GRID);

@@ -5,15 +5,23 @@
 //! puts on a PNG (1600 pixels wide for one column of a paper) or an SVG, and the table behind it as CSV. Files are written
 //! whole or not at all, and the same input gives the same bytes.
 //!
-//! [`write_report`] and, for studies of one pose, [`write_manifold_report`] write everything; [`write_figure`], [`write_json`] and [`write_text`] write
-//! single files.
+//! [`write_report`], for studies of one pose [`write_manifold_report`] and for surrogates
+//! [`write_surrogate_report`] write everything; [`write_figure`], [`write_json`] and [`write_text`]
+//! write single files.
 
+mod agreement;
+mod angle_axes;
+mod angle_density;
 mod arm;
 mod axonometry;
+mod calibration;
 mod canvas;
+mod colour_bar;
 mod convergence;
 mod error;
 mod figure;
+mod figure_of;
+mod filter_figure;
 mod free_place;
 mod half_plane_figure;
 mod html;
@@ -30,11 +38,14 @@ mod manifold_view;
 mod number;
 mod outline;
 mod panel;
+mod point_cloud;
 mod points;
 mod polar;
+mod predicted_workspaces;
 mod projection;
 mod render;
 mod result_files;
+mod ring_picture;
 mod rings;
 mod robot_3d;
 mod robot_figure;
@@ -45,22 +56,30 @@ mod sections;
 mod sensitivity;
 mod share_scale;
 mod shares;
+mod size_scatter;
 mod sizes_figure;
 mod slices;
 mod spatial_figure;
 mod style;
 mod subscript;
+mod surrogate_page;
+mod surrogate_report;
 mod table;
 #[cfg(test)]
 mod tests;
 mod ticks;
+mod training_curve;
 mod workspace_figure;
 mod write;
 
+pub use angle_density::AngleDensity;
+pub use calibration::{Calibration, CalibrationBin, CalibrationCurve};
 pub use canvas::{Canvas, Size};
 pub use convergence::{Convergence, ConvergencePoint};
 pub use error::ReportError;
 pub use figure::{Figure, Format, figure_png, figure_svg, write_figure};
+pub use figure_of::FigureOf;
+pub use filter_figure::FilterFigure;
 pub use half_plane_figure::HalfPlaneFigure;
 pub use html::{InlineFigure, page};
 pub use limits_figure::LimitsFigure;
@@ -72,12 +91,16 @@ pub use manifold_report::{
 pub use manifold_view::ManifoldFigure3d;
 pub use number::{degrees, estimate, percentage, plain, unit, with_error};
 pub use points::{write_curves, write_points};
+pub use predicted_workspaces::{PredictedWorkspaces, WorkspaceCase};
 pub use result_files::{write_bytes, write_json, write_text};
 pub use robot_3d::{JointMark, SpatialRobotFigure};
 pub use robot_figure::RobotFigure;
 pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};
+pub use size_scatter::{SizeScatter, SizeSeries};
 pub use sizes_figure::SizesFigure;
 pub use spatial_figure::SpatialWorkspaceFigure;
+pub use surrogate_report::{ReportTable, SurrogateReport, write_surrogate_report};
 pub use table::Table;
+pub use training_curve::{TrainingCurve, TrainingEpoch};
 pub use workspace_figure::WorkspaceFigure;
 pub use write::{Report, write_report};

@@ -46,6 +46,14 @@ impl Panel {
         }
     }
 
+    /// Light lines down the panel at the ticks of x.
+    pub(super) fn upright_grid(&self, canvas: &mut Canvas, x_ticks: &[Tick]) {
+        for tick in x_ticks {
+            let ends = self.y.map(|y| self.at(tick.value, y));
+            canvas.stroke(&ends, 0.4, GRID);
+        }
+    }
+
     /// Left and lower axis with ticks; `labels_left` is false where a neighbour shows them.
     pub(super) fn axes(
         &self,

@@ -19,24 +19,37 @@ struct Strand {
     /// Radius, first and last angle, unwrapped along the strand.
     rows: Vec<[f64; 3]>,
     last: Arc,
+    /// Whether nothing precedes its inner end and nothing follows its outer end.
+    is_capped: [bool; 2],
 }
 
 /// The polygons about the origin, in metres, that make up the rings.
 pub(super) fn polygons(map: &RingMap) -> Vec<Vec<Point>> {
+    strands(&slices(map)).iter().map(Strand::polygon).collect()
+}
+
+/// The edges of sets of angles over the radius: lines of [radius, angle], the angle unwrapped along each line.
+///
+/// Sides run through the ends of the arcs; where all of an arc appears or ends at once, a line
+/// across closes it.
+pub(super) fn edges(slices: &[Slice]) -> Vec<Vec<Point>> {
+    strands(slices).iter().flat_map(Strand::edges).collect()
+}
+
+fn strands(slices: &[Slice]) -> Vec<Strand> {
     let mut done = Vec::new();
     let mut open: Vec<Strand> = Vec::new();
     let mut edge = f64::NEG_INFINITY;
-    let slices = slices(map);
-    for ring in &slices {
+    for ring in slices {
         let is_adjacent = (ring.inner - edge).abs() <= 1e-6 * ring.outer;
         if !is_adjacent {
-            done.append(&mut open);
+            done.extend(open.drain(..).map(Strand::ended));
         }
         open = continued(open, ring, &mut done);
         edge = ring.outer;
     }
-    done.append(&mut open);
-    done.iter().map(Strand::polygon).collect()
+    done.extend(open.into_iter().map(Strand::ended));
+    done
 }
 
 /// Carries the open strands over to `ring`; those that do not go on move to `done`.
@@ -57,21 +70,23 @@ fn continued(open: Vec<Strand>, ring: &Slice, done: &mut Vec<Strand>) -> Vec<Str
                 taken[k] = true;
                 next.push(strand);
             }
+            [] => done.push(strand.ended()),
             _ => done.push(strand),
         }
     }
-    let fresh = arcs.iter().zip(&taken).filter(|(_, taken)| !**taken);
-    next.extend(fresh.map(|(arc, _)| Strand::new(ring, arc)));
+    let fresh = (0..arcs.len()).filter(|k| !taken[*k]);
+    next.extend(fresh.map(|k| Strand::new(ring, &arcs[k], claims(k) == 0)));
     next
 }
 
 impl Strand {
-    fn new(ring: &Slice, arc: &Arc) -> Strand {
+    fn new(ring: &Slice, arc: &Arc, is_capped: bool) -> Strand {
         let mut strand = Strand {
             inner: ring.inner,
             outer: ring.outer,
             rows: Vec::new(),
             last: *arc,
+            is_capped: [is_capped, false],
         };
         strand.push(ring, arc);
         strand
@@ -88,6 +103,27 @@ impl Strand {
             .push([ring.at, arc.start() + turns, arc.end() + turns]);
         self.outer = ring.outer;
         self.last = *arc;
+    }
+
+    /// The strand whose outer end nothing follows.
+    fn ended(mut self) -> Strand {
+        self.is_capped[1] = true;
+        self
+    }
+
+    /// Its sides and, where it is capped, its ends. A full circle has no sides.
+    fn edges(&self) -> Vec<Vec<Point>> {
+        let (first, last) = (self.rows[0], self.rows[self.rows.len() - 1]);
+        let ends = [(self.inner, first), (self.outer, last)];
+        let capped = ends.iter().zip(self.is_capped).filter(|(_, is)| *is);
+        let across = capped.map(|((r, row), _)| vec![[*r, row[1]], [*r, row[2]]]);
+        let side = |which: usize| {
+            let rows = self.rows.iter().map(|row| [row[0], row[which]]);
+            let [from, to] = ends.map(|(r, row)| [r, row[which]]);
+            [from].into_iter().chain(rows).chain([to]).collect()
+        };
+        let sides = [1, 2].into_iter().filter(|_| !self.last.is_full());
+        across.chain(sides.map(side)).collect()
     }
 
     /// Up the first side, along the outer circle, down the other side, along the inner circle.

@@ -1,12 +1,9 @@
 //! From a share to a colour, and the bar that tells which is which.
 
 use super::canvas::{Canvas, Point};
-use super::label::{Label, rectangle};
-use super::style::{HALF_CAPITAL, INK, NORMAL, SMALL};
-use super::ticks;
+use super::colour_bar::ColourBar;
 use crate::workspace::SpatialShareMap;
 use plotters::prelude::ViridisRGB;
-use plotters::style::text_anchor::HPos;
 use plotters::style::{Color, RGBAColor};
 
 /// Colours of one kind of share.
@@ -16,6 +13,8 @@ pub(super) enum Palette {
     Viridis,
     /// Shares of cells and reachable shares, light to dark.
     Blues,
+    /// Densities: blues that start from white.
+    Density,
 }
 
 impl Palette {
@@ -27,6 +26,15 @@ impl Palette {
             false => Palette::Blues,
         }
     }
+
+    /// The colour at a level in [0, 1].
+    pub(super) fn colour(self, level: f64) -> RGBAColor {
+        match self {
+            Palette::Viridis => ViridisRGB::get_color(level).to_rgba(),
+            Palette::Blues => blue(&BLUES[1..], level),
+            Palette::Density => blue(&BLUES, level),
+        }
+    }
 }
 
 /// Shares from 0 to `top` as colours.
@@ -36,11 +44,9 @@ pub(super) struct ShareScale {
     pub palette: Palette,
 }
 
-/// Width of a colour bar, points.
-const WIDTH: f64 = 8.0;
-
-/// Colours of [`Palette::Blues`] at equal distances.
-const BLUES: [[f64; 3]; 4] = [
+/// Colours of [`Palette::Density`] at equal distances; [`Palette::Blues`] starts from the second.
+const BLUES: [[f64; 3]; 5] = [
+    [255.0, 255.0, 255.0],
     [200.0, 224.0, 242.0],
     [115.0, 183.0, 226.0],
     [20.0, 115.0, 180.0],
@@ -64,53 +70,31 @@ impl ShareScale {
     }
 
     pub(super) fn colour(&self, share: f64) -> RGBAColor {
-        let level = (share / self.top).clamp(0.0, 1.0);
-        match self.palette {
-            Palette::Viridis => ViridisRGB::get_color(level).to_rgba(),
-            Palette::Blues => blue(level),
-        }
+        self.palette.colour((share / self.top).clamp(0.0, 1.0))
     }
 
     /// Space that a bar needs right of its corner, points, its label included.
     pub(super) fn bar_width(&self) -> f64 {
-        self.numbers_width() + WIDTH + 4.0 + 3.0 + NORMAL + 2.0
+        self.bar().width()
     }
 
-    fn numbers_width(&self) -> f64 {
-        let widths = self.ticks().into_iter();
-        let widths = widths.map(|tick| Label::new(&tick.label, SMALL).width());
-        widths.fold(0.0, f64::max)
-    }
-
-    fn ticks(&self) -> Vec<ticks::Tick> {
-        ticks::round(0.0, 100.0 * self.top, 5)
+    /// The bar in percent.
+    fn bar(&self) -> ColourBar {
+        ColourBar::new(100.0 * self.top, self.palette)
     }
 
     /// Draws the bar with its left upper corner at (x, y), `text` beside it.
-    pub(super) fn draw_bar(&self, canvas: &mut Canvas, [x, y]: Point, height: f64, text: &str) {
-        canvas.picture([x, y], [WIDTH, height], |_, at| {
-            let colour = self.colour(self.top * (1.0 - (at - y) / height));
-            [colour.0, colour.1, colour.2]
-        });
-        canvas.outline(&rectangle(x, y, WIDTH, height), 0.5, INK);
-        for tick in self.ticks() {
-            let at = y + height * (1.0 - tick.value / (100.0 * self.top));
-            canvas.stroke(&[[x + WIDTH, at], [x + WIDTH + 2.5, at]], 0.6, INK);
-            let place = [x + WIDTH + 4.0, at + HALF_CAPITAL * SMALL];
-            Label::new(&tick.label, SMALL).draw(canvas, place);
-        }
-        let label = Label::new(text, NORMAL).align(HPos::Center).upright();
-        let right = x + WIDTH + 4.0 + self.numbers_width() + 3.0 + NORMAL;
-        label.draw_within(canvas, [right, y + 0.5 * height], height);
+    pub(super) fn draw_bar(&self, canvas: &mut Canvas, corner: Point, height: f64, text: &str) {
+        self.bar().draw(canvas, corner, height, text);
     }
 }
 
-fn blue(level: f64) -> RGBAColor {
-    let at = level * (BLUES.len() - 1) as f64;
-    let k = (at as usize).min(BLUES.len() - 2);
+fn blue(colours: &[[f64; 3]], level: f64) -> RGBAColor {
+    let at = level * (colours.len() - 1) as f64;
+    let k = (at as usize).min(colours.len() - 2);
     let t = at - k as f64;
     let [red, green, blue] =
-        std::array::from_fn(|c| (BLUES[k][c] + t * (BLUES[k + 1][c] - BLUES[k][c])) as u8);
+        std::array::from_fn(|c| (colours[k][c] + t * (colours[k + 1][c] - colours[k][c])) as u8);
     RGBAColor(red, green, blue, 1.0)
 }
 

@@ -31,7 +31,8 @@ pub(super) fn slices(map: &RingMap) -> Vec<Slice> {
     let runs = rings.chunk_by(|a, b| {
         (b.inner - a.outer).abs() <= 1e-3 * (b.outer - b.inner).min(a.outer - a.inner)
     });
-    runs.flat_map(refined).collect()
+    runs.flat_map(|run| refined(run.iter().map(|ring| whole(ring)).collect()))
+        .collect()
 }
 
 fn is_drawable(ring: &Ring) -> bool {
@@ -39,9 +40,10 @@ fn is_drawable(ring: &Ring) -> bool {
 }
 
 /// The slices of rings without a space between them.
-fn refined(rings: &[&Ring]) -> Vec<Slice> {
-    let mut rows: Vec<Slice> = rings.iter().map(|ring| whole(ring)).collect();
-    let [first, last] = [&rows[0], &rows[rows.len() - 1]];
+pub(super) fn refined(mut rows: Vec<Slice>) -> Vec<Slice> {
+    let [Some(first), Some(last)] = [rows.first(), rows.last()] else {
+        return rows;
+    };
     let below = empty(2.0 * first.inner - first.at);
     let above = empty(2.0 * last.outer - last.at);
     rows.insert(0, below);

@@ -14,6 +14,7 @@ use std::path::Path;
 mod manifolds;
 mod odd_input;
 mod spatial;
+mod surrogates;
 
 const BOTH: [Format; 2] = [Format::Png, Format::Svg];
 

@@ -1,6 +1,6 @@
 //! Where an axis has its ticks and how they read.
 
-use super::number::{rounded, superscript};
+use super::number::{plain, rounded, superscript};
 
 /// A labelled position on an axis.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,6 +43,45 @@ pub(super) fn decades(low: f64, high: f64, count: usize) -> Vec<Tick> {
         tick.label = format!("10{}", superscript(tick.value as i32));
     }
     ticks
+}
+
+/// Losses and the like between two powers of ten: `low` and `high` are decimal logarithms, and so
+/// are the ticks' values. Whole powers over two decades, else 1, 2 and 5 times them or, where that
+/// is too coarse, round numbers.
+pub(super) fn logarithmic(low: f64, high: f64, count: usize) -> Vec<Tick> {
+    if !(low.is_finite() && high.is_finite()) || high - low >= 2.0 {
+        return decades(low, high, count);
+    }
+    let place = |value: f64, label: String| Tick {
+        value: value.log10(),
+        label,
+    };
+    let powers = low.floor() as i32..=high.ceil() as i32;
+    let usual = powers.flat_map(|power| [1.0, 2.0, 5.0].map(|m| m * 10f64.powi(power)));
+    let usual = usual.map(|value| place(value, plain(value)));
+    let usual: Vec<Tick> = usual
+        .filter(|t| low <= t.value && t.value <= high)
+        .collect();
+    if usual.len() >= 3 {
+        return usual;
+    }
+    let even = round(10f64.powf(low), 10f64.powf(high), count).into_iter();
+    let even = even.filter(|tick| tick.value > 0.0);
+    even.map(|tick| place(tick.value, tick.label)).collect()
+}
+
+/// Multiples of 90° from −180° to 180°.
+pub(super) fn quarters() -> Vec<Tick> {
+    degrees(-180.0, 180.0, 4)
+}
+
+/// The same ticks without labels, where a neighbour shows them.
+pub(super) fn unlabelled(ticks: &[Tick]) -> Vec<Tick> {
+    let bare = |tick: &Tick| Tick {
+        value: tick.value,
+        label: String::new(),
+    };
+    ticks.iter().map(bare).collect()
 }
 
 fn multiples(low: f64, high: f64, step: f64, last: i32) -> Vec<Tick> {

@@ -6,18 +6,16 @@ use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
 use super::panel::{BOTTOM, LEFT, Panel};
-use super::polar;
-use super::rings;
+use super::ring_picture;
 use super::shares;
 use super::style::{
     COLUMN, GREY, INK, MARGIN, ORANGE, PALE, SKY, TITLE, VERMILLION, WHITE, translucent,
 };
 use super::table::{Table, cell};
 use super::ticks;
-use crate::workspace::{ArtificialLimits, RingMap, ShareMap, WorkspaceMap};
+use crate::workspace::{ArtificialLimits, ShareMap, WorkspaceMap};
 use plotters::style::RGBAColor;
 use plotters::style::text_anchor::HPos;
-use std::f64::consts::TAU;
 
 /// Space right of the plot for the colour bar of a pose task, points.
 const BAR: f64 = 47.0;
@@ -79,7 +77,7 @@ impl Figure for WorkspaceFigure<'_> {
         title.draw_within(canvas, [0.5 * COLUMN, 10.0], COLUMN - 2.0 * MARGIN);
         self.draw_legend(canvas);
         match self.map {
-            WorkspaceMap::Rings(map) => draw_rings(canvas, &panel, map),
+            WorkspaceMap::Rings(map) => ring_picture::draw(canvas, &panel, map),
             WorkspaceMap::Shares(map) => draw_shares(canvas, &panel, map),
         }
         if self.is_empty() {
@@ -95,7 +93,7 @@ impl Figure for WorkspaceFigure<'_> {
 
     fn table(&self) -> Table {
         match self.map {
-            WorkspaceMap::Rings(map) => ring_table(map),
+            WorkspaceMap::Rings(map) => ring_picture::table(map),
             WorkspaceMap::Shares(map) => share_table(map),
         }
     }
@@ -163,21 +161,6 @@ impl WorkspaceFigure<'_> {
     }
 }
 
-/// The unrestricted annulus and on it the rings as vector polygons.
-fn draw_rings(canvas: &mut Canvas, panel: &Panel, map: &RingMap) {
-    if is_annulus(map.unrestricted) {
-        let annulus = polar::sector([0.0, 0.0], map.unrestricted, 0.0, TAU);
-        canvas.fill(&panel.path(&annulus), PALE);
-    }
-    for polygon in rings::polygons(map) {
-        let polygon = panel.path(&polygon);
-        canvas.fill(&polygon, SKY);
-        // Closes the hairline that antialiasing leaves between neighbours.
-        canvas.outline(&polygon, 0.35, SKY);
-    }
-    draw_edges(canvas, panel, map.unrestricted);
-}
-
 /// All cells as one picture.
 fn draw_shares(canvas: &mut Canvas, panel: &Panel, map: &ShareMap) {
     let scale = (panel.x[1] - panel.x[0]) / panel.width;
@@ -187,47 +170,12 @@ fn draw_shares(canvas: &mut Canvas, panel: &Panel, map: &ShareMap) {
         let y = panel.y[1] - (y - panel.top) * scale;
         shares::colour_at(map, x, y)
     });
-    draw_edges(canvas, panel, map.unrestricted);
+    ring_picture::draw_circles(canvas, panel, map.unrestricted);
     shares::colour_bar(
         canvas,
         [panel.left + panel.width + 6.0, panel.top],
         panel.height,
     );
-}
-
-/// The circles around the unrestricted workspace.
-fn draw_edges(canvas: &mut Canvas, panel: &Panel, unrestricted: [f64; 2]) {
-    if is_annulus(unrestricted) {
-        for radius in unrestricted.into_iter().filter(|r| *r > 0.0) {
-            let circle = polar::arc([0.0, 0.0], radius, 0.0, TAU);
-            canvas.stroke(&panel.path(&circle), 0.5, GREY);
-        }
-    }
-}
-
-fn is_annulus([inner, outer]: [f64; 2]) -> bool {
-    inner.is_finite() && outer.is_finite() && 0.0 <= inner && inner < outer
-}
-
-/// One row per arc of every ring.
-fn ring_table(map: &RingMap) -> Table {
-    let mut table = Table::new(&[
-        "radius_inner_m",
-        "radius_outer_m",
-        "beta_lower_deg",
-        "beta_upper_deg",
-    ]);
-    for ring in &map.rings {
-        for arc in ring.rotation_set.arcs() {
-            let ends = [arc.start(), arc.end()].map(f64::to_degrees);
-            table.rows.push(
-                [ring.inner, ring.outer, ends[0], ends[1]]
-                    .map(cell)
-                    .to_vec(),
-            );
-        }
-    }
-    table
 }
 
 /// One row per cell.

@@ -105,16 +105,14 @@ impl Report<'_> {
     }
 }
 
-/// Writes all figures with their tables, `result.json`, `study.toml`, `report.html` and, if there
-/// are any, `points.vtk` into `directory`; returns the files' paths. The page contains all figures whatever the `formats`.
-pub fn write_report(
-    report: &Report,
+/// Writes figures with their tables; returns the files' paths, and all figures for the page.
+pub(super) fn write_figures<'f>(
+    figures: impl Iterator<Item = &'f dyn Figure>,
     directory: &Path,
     formats: &[Format],
-) -> Result<Vec<PathBuf>, ReportError> {
-    let (sizes, limits) = (report.sizes_figure(), report.limits_figure());
+) -> Result<(Vec<PathBuf>, Vec<InlineFigure>), ReportError> {
     let (mut written, mut inline) = (Vec::new(), Vec::new());
-    for figure in report.all_figures(&limits, sizes.as_ref()) {
+    for figure in figures {
         let png = figure_png(figure)?;
         written.extend(write_rendered(figure, &png, directory, formats)?);
         inline.push(InlineFigure {
@@ -123,6 +121,19 @@ pub fn write_report(
             is_wide: figure.size().width > COLUMN,
         });
     }
+    Ok((written, inline))
+}
+
+/// Writes all figures with their tables, `result.json`, `study.toml`, `report.html` and, if there
+/// are any, `points.vtk` into `directory`; returns the files' paths. The page contains all figures whatever the `formats`.
+pub fn write_report(
+    report: &Report,
+    directory: &Path,
+    formats: &[Format],
+) -> Result<Vec<PathBuf>, ReportError> {
+    let (sizes, limits) = (report.sizes_figure(), report.limits_figure());
+    let figures = report.all_figures(&limits, sizes.as_ref());
+    let (mut written, inline) = write_figures(figures.into_iter(), directory, formats)?;
     let path = |name: &str| directory.join(name);
     if let Some(map) = report.points {
         write_points(map, &path(POINTS))?;
