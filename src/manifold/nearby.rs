@@ -58,3 +58,29 @@ fn collect<const N: usize>(blocks: &[[Lanes; N]], point: &[f64; N], square: f64,
         }
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::super::curve::distance;
+    use super::*;
+    use crate::sampling::stream;
+    use rand::Rng;
+
+    #[test]
+    fn finds_the_vertices_that_one_by_one_are_near() {
+        let mut rng = stream(5, 0);
+        let mut draw = || -> [f64; 3] { std::array::from_fn(|_| rng.random_range(-9.0..9.0)) };
+        let mut blocks = Blocks::default();
+        // The second set is shorter: nothing of the first may be left.
+        for count in [83, 21, 8, 1] {
+            let points: Vec<[f64; 3]> = (0..count).map(|_| draw()).collect();
+            blocks.set(&points);
+            for _ in 0..50 {
+                let point = draw();
+                let near = |&index: &usize| distance(&points[index], &point) <= 2.5;
+                let expected: Vec<usize> = (0..count).filter(near).collect();
+                assert_eq!(blocks.near(&point, 2.5).to_vec(), expected);
+            }
+        }
+    }
+}

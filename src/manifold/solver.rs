@@ -57,8 +57,8 @@ impl SearchSettings {
     }
 }
 
-/// Task points that are best searched at once: more would not stay in the processor's caches, with
-/// fewer, searches that end last have no neighbours.
+/// Task points that are best searched at once: enough that the searches that end last, without
+/// neighbours, hardly count.
 pub(crate) const BATCH: usize = 64;
 
 /// A task point to search, with its own random stream.
