@@ -55,15 +55,18 @@ fn pre_images(c: &mut Criterion) {
         ] {
             let mut search = PreImageSearch::new(&robot, task, settings).expect("redundancy 1");
             let poses = reachable(&mut search, reach_bound(&robot), 256);
-            let mut rng = stream(3, 0);
-            let mut next = 0;
-            c.bench_function(&format!("pre-image {name}, {label}, 256 poses"), |b| {
+            let draw = |(k, pose): (usize, &Isometry3<f64>)| (*pose, stream(3, k as u64));
+            let jobs: Vec<_> = poses.iter().enumerate().map(draw).collect();
+            let name = format!("pre-image {name}, {label}, 256 poses");
+            c.bench_function(&name, |b| {
                 b.iter(|| {
-                    for pose in &poses {
-                        next += search.find(black_box(pose), &mut rng).manifolds.len();
-                    }
-                    next
+                    let mut jobs = black_box(jobs.clone());
+                    let find = |(pose, rng): &mut (_, _)| search.find(pose, rng).manifolds.len();
+                    jobs.iter_mut().map(find).sum::<usize>()
                 })
+            });
+            c.bench_function(&format!("{name}, batch"), |b| {
+                b.iter(|| search.find_all(&mut black_box(jobs.clone())))
             });
         }
     }

@@ -39,6 +39,23 @@ pub struct Linearisation<T, const N: usize, const M: usize> {
     pub jacobian: [[T; N]; M],
 }
 
+impl<T: Real, const N: usize, const M: usize> Linearisation<T, N, M> {
+    /// Zeros, to be overwritten.
+    #[inline(always)]
+    pub fn new() -> Linearisation<T, N, M> {
+        Linearisation {
+            residual: [T::constant(0.0); M],
+            jacobian: [[T::constant(0.0); N]; M],
+        }
+    }
+}
+
+impl<T: Real, const N: usize, const M: usize> Default for Linearisation<T, N, M> {
+    fn default() -> Linearisation<T, N, M> {
+        Linearisation::new()
+    }
+}
+
 impl<const N: usize, const M: usize> Kernel<N, M> {
     /// The kernel of `task` for `chain`; `None` if N or M do not fit.
     pub fn new(chain: &Chain, task: TaskSpace) -> Option<Kernel<N, M>> {
@@ -68,6 +85,19 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
     /// Residual and Jacobian at `theta`.
     #[inline(always)]
     pub fn linearise<T: Real>(&self, theta: &[T; N], goal: &Goal<T>) -> Linearisation<T, N, M> {
+        let mut result = Linearisation::new();
+        self.linearise_into(theta, goal, &mut result);
+        result
+    }
+
+    /// Residual and Jacobian at `theta`, written to `out`: eight of them are too large to be moved.
+    #[inline(always)]
+    pub fn linearise_into<T: Real>(
+        &self,
+        theta: &[T; N],
+        goal: &Goal<T>,
+        out: &mut Linearisation<T, N, M>,
+    ) {
         let zero = T::constant(0.0);
         let one = T::constant(1.0);
         let (mut x, mut y, mut z) = ([one, zero, zero], [zero, one, zero], [zero, zero, one]);
@@ -86,9 +116,10 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
             axes[k] = z;
             origins[k] = p;
             let (s, c) = (sines[k], cosines[k]);
-            let [a, b, d] = joint.arm.map(T::constant);
+            let [a, b, d] = joint.arm;
+            let (a, b, d) = (T::constant(a), T::constant(b), T::constant(d));
             let d = d + theta[k] * T::constant(joint.slide);
-            let [cos, sin] = joint.twist.map(T::constant);
+            let (cos, sin) = (T::constant(joint.twist[0]), T::constant(joint.twist[1]));
             for i in 0..3 {
                 T::keep_loop();
                 let turned = c * x[i] + s * y[i];
@@ -99,12 +130,7 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
                 z[i] = cos * z[i] - sin * across;
             }
         }
-        let mut result = Linearisation {
-            residual: [zero; M],
-            jacobian: [[zero; N]; M],
-        };
-        self.fill(&mut result, goal, &axes, &origins, &p, &[x, y, z]);
-        result
+        self.fill(out, goal, &axes, &origins, &p, &[x, y, z]);
     }
 
     /// Fills residual and Jacobian from the frames.
@@ -129,7 +155,9 @@ impl<const N: usize, const M: usize> Kernel<N, M> {
             T::keep_loop();
             let (turn, slide) = (T::constant(joint.turn), T::constant(joint.slide));
             let z = axes[k];
-            let lever = [0, 1, 2].map(|i| p[i] - origins[k][i]);
+            let o = origins[k];
+            // Written out: a closure over wide numbers is called, not inlined.
+            let lever = [p[0] - o[0], p[1] - o[1], p[2] - o[2]];
             let swing = cross(&z, &lever);
             for i in 0..rows {
                 out.jacobian[i][k] = (swing[i] * turn + z[i] * slide) * unit;
@@ -177,7 +205,7 @@ fn rotation_left<T: Real>(goal: &[[T; 3]; 3], frame: &[[T; 3]; 3]) -> [T; 3] {
         }
     }
     let scale = T::constant(1.0) / trace.max(T::constant(1e-12)).sqrt();
-    sum.map(|s| s * scale)
+    [sum[0] * scale, sum[1] * scale, sum[2] * scale]
 }
 
 #[inline(always)]

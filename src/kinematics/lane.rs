@@ -27,6 +27,12 @@ pub trait Real:
     fn max(self, other: Self) -> Self;
     /// The smaller value, lane by lane.
     fn min(self, other: Self) -> Self;
+    /// The magnitude.
+    fn abs(self) -> Self;
+    /// 1 with the sign of the number.
+    fn signum(self) -> Self;
+    /// The number in lane `lane`; a single number is the same in all.
+    fn lane(self, lane: usize) -> f64;
     /// Call it first in every loop over coordinates: keeps the compiler from turning that loop,
     /// rather than the lanes, into vectors, which costs a factor of three. Does nothing else.
     fn keep_loop();
@@ -52,6 +58,18 @@ impl Real for f64 {
     #[inline(always)]
     fn min(self, other: f64) -> f64 {
         if self < other { self } else { other }
+    }
+    #[inline(always)]
+    fn abs(self) -> f64 {
+        self.abs()
+    }
+    #[inline(always)]
+    fn signum(self) -> f64 {
+        self.signum()
+    }
+    #[inline(always)]
+    fn lane(self, _: usize) -> f64 {
+        self
     }
     #[inline(always)]
     fn keep_loop() {}
@@ -137,6 +155,18 @@ impl Real for Lanes {
             result.0[lane] = Real::min(self.0[lane], other.0[lane]);
         }
         result
+    }
+    #[inline(always)]
+    fn abs(self) -> Lanes {
+        self.map(f64::abs)
+    }
+    #[inline(always)]
+    fn signum(self) -> Lanes {
+        self.map(f64::signum)
+    }
+    #[inline(always)]
+    fn lane(self, lane: usize) -> f64 {
+        self.0[lane]
     }
     #[inline(always)]
     fn keep_loop() {

@@ -10,6 +10,7 @@ mod forward;
 mod kernel;
 mod lane;
 mod newton;
+mod pivot;
 mod posture;
 mod sine;
 
@@ -20,6 +21,7 @@ pub use forward::{joint_frames, reach_bound, tool_frame};
 pub use kernel::{Goal, Kernel, Linearisation};
 pub use lane::{LANES, Lanes, Real};
 pub(crate) use newton::dot;
-pub use newton::{NewtonStep, damped_step, newton_step};
+pub use newton::{NewtonStep, PivotedStep, damped_step, newton_step, newton_steps};
+pub use pivot::Pivot;
 pub use posture::{JointPlace, display_posture, joint_places};
 pub use sine::sin_cos;

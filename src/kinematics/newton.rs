@@ -6,6 +6,7 @@
 
 use super::kernel::Linearisation;
 use super::lane::Real;
+use super::pivot::Pivot;
 
 /// What one linearisation says about the manifold at a configuration.
 #[derive(Clone, Copy, Debug)]
@@ -18,75 +19,122 @@ pub struct NewtonStep<const N: usize> {
     pub manipulability: f64,
 }
 
-/// Null vector and correction for N = M + 1, by Gaussian elimination with column pivoting.
-///
-/// The sign of the tangent is intrinsic, i.e. a property of the configuration alone: two strands
-/// of a manifold that run past each other are oriented oppositely, so that a jump from one to the
-/// other shows. `None` where the Jacobian has lost rank to working precision.
-#[expect(clippy::needless_range_loop, reason = "indices as in the textbook")]
+/// Newton steps of one configuration or of eight, with their coordinates in the order in which the
+/// elimination has left them.
+#[derive(Clone, Copy, Debug)]
+pub struct PivotedStep<T: Pivot, const N: usize> {
+    tangent: [T; N],
+    correction: [T; N],
+    manipulability: T,
+    /// Which coordinate every entry belongs to.
+    order: [T::Index; N],
+    /// The least pivot's magnitude.
+    least: T,
+}
+
+impl<T: Pivot, const N: usize> PivotedStep<T, N> {
+    /// The step in lane `lane`; `None` where the Jacobian has lost rank to working precision.
+    #[inline(always)]
+    pub fn lane(&self, lane: usize) -> Option<NewtonStep<N>> {
+        if self.least.lane(lane) < 1e-14 {
+            return None;
+        }
+        let mut step = NewtonStep {
+            tangent: [0.0; N],
+            correction: [0.0; N],
+            manipulability: self.manipulability.lane(lane),
+        };
+        for k in 0..N {
+            let coordinate = T::index_in(self.order[k], lane);
+            step.tangent[coordinate] = self.tangent[k].lane(lane);
+            step.correction[coordinate] = self.correction[k].lane(lane);
+        }
+        Some(step)
+    }
+}
+
+/// Null vector and correction for N = M + 1, see [`newton_steps`]; `None` where the Jacobian has
+/// lost rank to working precision.
 #[inline(always)]
 pub fn newton_step<const N: usize, const M: usize>(
     linear: &Linearisation<f64, N, M>,
 ) -> Option<NewtonStep<N>> {
+    newton_steps(&mut { *linear }).lane(0)
+}
+
+/// Null vectors and corrections for N = M + 1, by Gaussian elimination with column pivoting, which
+/// overwrites `linear`.
+///
+/// The sign of a tangent is intrinsic, i.e. a property of the configuration alone: two strands
+/// of a manifold that run past each other are oriented oppositely, so that a jump from one to the
+/// other shows.
+#[expect(clippy::needless_range_loop, reason = "indices as in the textbook")]
+#[inline(always)]
+pub fn newton_steps<T: Pivot, const N: usize, const M: usize>(
+    linear: &mut Linearisation<T, N, M>,
+) -> PivotedStep<T, N> {
     debug_assert_eq!(N, M + 1);
-    let mut a = linear.jacobian;
-    let mut b = linear.residual;
-    let mut order: [usize; N] = std::array::from_fn(|i| i);
-    let mut determinant = if M.is_multiple_of(2) { 1.0 } else { -1.0 };
+    let (zero, one) = (T::constant(0.0), T::constant(1.0));
+    let Linearisation {
+        jacobian: a,
+        residual: b,
+    } = linear;
+    let mut order = [T::index(0); N];
+    for k in 0..N {
+        order[k] = T::index(k);
+    }
+    let mut least = T::constant(f64::INFINITY);
+    // Its sign changes with every swap.
+    let mut determinant = if M.is_multiple_of(2) { one } else { -one };
     for k in 0..M {
-        let mut pivot = k;
-        for j in k + 1..N {
-            if a[k][j].abs() > a[k][pivot].abs() {
-                pivot = j;
-            }
-        }
-        if pivot != k {
-            for row in &mut a {
-                row.swap(k, pivot);
-            }
-            order.swap(k, pivot);
-            determinant = -determinant;
-        }
+        T::keep_loop();
+        let pivot = T::greatest(&a[k], k);
+        T::swap_columns(a, k, pivot);
+        T::swap_indices(&mut order, k, pivot);
         let p = a[k][k];
-        determinant *= p;
-        if p.abs() < 1e-14 {
-            return None;
-        }
-        let inverse = 1.0 / p;
+        determinant = determinant.negated_unless(pivot, k) * p;
+        least = p.abs().min(least);
+        let inverse = one / p;
         for i in k + 1..M {
+            T::keep_loop();
             let factor = a[i][k] * inverse;
             for j in k + 1..N {
-                a[i][j] -= factor * a[k][j];
+                T::keep_loop();
+                a[i][j] = a[i][j] - factor * a[k][j];
             }
-            b[i] -= factor * b[k];
+            b[i] = b[i] - factor * b[k];
         }
     }
     // Back-substitution of both: the null vector with last entry 1, and a solution with last 0.
-    let (mut null, mut solution) = ([0.0; N], [0.0; N]);
-    null[M] = 1.0;
+    let (mut null, mut solution) = ([zero; N], [zero; N]);
+    null[M] = one;
     for k in (0..M).rev() {
+        T::keep_loop();
         let (mut n, mut s) = (-a[k][M], -b[k]);
         for j in k + 1..M {
-            n -= a[k][j] * null[j];
-            s -= a[k][j] * solution[j];
+            T::keep_loop();
+            n = n - a[k][j] * null[j];
+            s = s - a[k][j] * solution[j];
         }
-        let inverse = 1.0 / a[k][k];
+        let inverse = one / a[k][k];
         null[k] = n * inverse;
         solution[k] = s * inverse;
     }
     let norm = dot(&null, &null).sqrt();
     let scale = determinant.signum() / norm;
     let along = dot(&null, &solution) / (norm * norm);
-    let mut step = NewtonStep {
-        tangent: [0.0; N],
-        correction: [0.0; N],
-        manipulability: determinant.abs() * norm,
-    };
     for k in 0..N {
-        step.tangent[order[k]] = null[k] * scale;
-        step.correction[order[k]] = solution[k] - along * null[k];
+        T::keep_loop();
+        solution[k] = solution[k] - along * null[k];
+        null[k] = null[k] * scale;
     }
-    Some(step)
+    PivotedStep {
+        tangent: null,
+        correction: solution,
+        manipulability: determinant.abs() * norm,
+        order,
+        least,
+    }
 }
 
 /// Damped least-norm correction −Jᵀ (JJᵀ + λ)⁻¹ residual (Levenberg–Marquardt), by an unpivoted
@@ -153,10 +201,11 @@ pub fn damped_step<T: Real, const N: usize, const M: usize>(
 
 /// Inner product.
 #[inline(always)]
-pub(crate) fn dot<const N: usize>(a: &[f64; N], b: &[f64; N]) -> f64 {
-    let mut sum = 0.0;
+pub(crate) fn dot<T: Real, const N: usize>(a: &[T; N], b: &[T; N]) -> T {
+    let mut sum = T::constant(0.0);
     for k in 0..N {
-        sum += a[k] * b[k];
+        T::keep_loop();
+        sum = sum + a[k] * b[k];
     }
     sum
 }

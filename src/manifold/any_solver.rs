@@ -5,7 +5,7 @@
 
 use super::curve::Curve;
 use super::self_motion::SelfMotionManifold;
-use super::solver::{SearchSettings, Solver};
+use super::solver::{Job, SearchSettings, Solver};
 use crate::design::TaskSpace;
 use crate::kinematics::{Chain, Goal, Kernel};
 use rand_chacha::ChaCha8Rng;
@@ -47,6 +47,25 @@ impl AnySolver {
         each!(self, solver => solver.solve(goal, settings, rng));
     }
 
+    /// Searches many task points at once; show them with [`AnySolver::turn_to`].
+    pub fn solve_all(&mut self, jobs: &mut [Job<'_>], settings: &SearchSettings) {
+        each!(self, solver => solver.solve_all(jobs, settings));
+    }
+
+    /// Makes task point `index` of those last searched the one that the methods below show.
+    pub fn turn_to(&mut self, index: usize) {
+        each!(self, solver => solver.turn_to(index));
+    }
+
+    /// Number of joints n.
+    pub fn joints(&self) -> usize {
+        match self {
+            AnySolver::Two(_) => 3,
+            AnySolver::Three(_) => 4,
+            AnySolver::Six(_) => 7,
+        }
+    }
+
     /// Rank of the Jacobian at a random configuration; below m, the task is degenerate.
     pub fn rank(&self) -> usize {
         each!(self, solver => solver.rank())
@@ -54,21 +73,21 @@ impl AnySolver {
 
     /// Starts made, and starts that landed.
     pub fn effort(&self) -> (usize, usize) {
-        each!(self, solver => (solver.seeds, solver.landed))
+        each!(self, solver => (solver.findings().seeds, solver.findings().landed))
     }
 
     /// Whether every check of the last task point's curves passed.
     pub fn is_sound(&self) -> bool {
-        each!(self, solver => solver.is_sound())
+        each!(self, solver => solver.findings().is_sound())
     }
 
     pub fn visit(&self, visitor: &mut impl CurveVisitor) {
-        each!(self, solver => solver.curves().iter().for_each(|curve| visitor.visit(curve)));
+        each!(self, solver => solver.findings().curves().iter().for_each(|curve| visitor.visit(curve)));
     }
 
     pub fn manifolds(&self) -> Vec<SelfMotionManifold> {
         each!(self, solver => {
-            let pairs = solver.curves().iter().zip(solver.hits());
+            let pairs = solver.findings().curves().iter().zip(solver.findings().hits());
             pairs.map(|(curve, &hits)| SelfMotionManifold::from_curve(curve, hits)).collect()
         })
     }

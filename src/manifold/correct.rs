@@ -1,28 +1,18 @@
 //! Newton steps onto a manifold, from nearby.
 
 use super::curve::{Curve, CurveStatus};
-use crate::kinematics::{Goal, Kernel, NewtonStep, dot, newton_step};
+use super::prober::Prober;
+use crate::kinematics::{NewtonStep, dot};
 use std::f64::consts::TAU;
 
-/// Linearisation and Newton step in one.
-#[inline]
-pub(super) fn probe<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    point: &[f64; N],
-    goal: &Goal<f64>,
-) -> Option<NewtonStep<N>> {
-    newton_step(&kernel.linearise(point, goal))
-}
-
 /// Newton steps from `guess` onto the manifold; `None` if they do not converge.
-pub(super) fn correct<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+pub(super) async fn correct<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     guess: &[f64; N],
 ) -> Option<([f64; N], NewtonStep<N>)> {
     let mut point = *guess;
     for _ in 0..12 {
-        let newton = probe(kernel, &point, goal)?;
+        let newton = prober.probe(&point).await?;
         let size = dot(&newton.correction, &newton.correction).sqrt();
         if size.is_nan() || size >= 0.1 {
             return None;
@@ -37,9 +27,8 @@ pub(super) fn correct<const N: usize, const M: usize>(
 }
 
 /// One Newton step at every vertex.
-pub(super) fn polish<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+pub(super) async fn polish<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     allowed: f64,
     curve: &mut Curve<N>,
 ) {
@@ -50,7 +39,7 @@ pub(super) fn polish<const N: usize, const M: usize>(
     };
     for index in ends..curve.points.len() - ends {
         let point = curve.points[index];
-        let Some(newton) = probe(kernel, &point, goal) else {
+        let Some(newton) = prober.probe(&point).await else {
             continue;
         };
         let size = dot(&newton.correction, &newton.correction);

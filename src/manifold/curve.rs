@@ -1,8 +1,9 @@
 //! One traced curve of a pre-image, as the fixed-size kernels see it.
 
+use super::nearby::Blocks;
 use super::segment::Segment;
 use crate::angle::wrap;
-use crate::kinematics::dot;
+use crate::kinematics::{Real, dot};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::TAU;
 
@@ -36,6 +37,8 @@ pub(crate) struct Curve<const N: usize> {
     pub crossings: Vec<usize>,
     /// Longest segment, radians.
     pub longest: f64,
+    /// The vertices once more, for [`Curve::locate`].
+    blocks: Blocks<N>,
 }
 
 impl<const N: usize> Curve<N> {
@@ -48,6 +51,7 @@ impl<const N: usize> Curve<N> {
             length: 0.0,
             crossings: Vec::new(),
             longest: 0.0,
+            blocks: Blocks::default(),
         }
     }
 
@@ -86,8 +90,9 @@ impl<const N: usize> Curve<N> {
         )
     }
 
-    /// Sums up lengths and, for a closed curve, the winding numbers.
+    /// Sums up lengths and, for a closed curve, the winding numbers, of the finished curve.
     pub fn measure(&mut self) {
+        self.blocks.set(&self.points);
         self.length = 0.0;
         self.longest = 0.0;
         for index in 0..self.segments() {
@@ -135,24 +140,17 @@ impl<const N: usize> Curve<N> {
         let tangent = tangent.filter(|_| self.crossings.is_empty());
         // A point of a segment is no farther from the nearer end than half the segment.
         let near = 0.55 * self.longest + tolerance;
-        let stride = self.longest.max(1e-9);
         let mut best: Option<(usize, f64, f64)> = None;
-        let mut next = 0;
-        while let Some(vertex) = self.points.get(next) {
-            let index = next;
-            let gap = distance(point, vertex);
-            if gap > near {
-                // No vertex before can be near: each is at most the longest segment farther on.
-                next += 1 + ((gap - near) / stride) as usize;
-                continue;
-            }
-            next += 1;
+        let mut seen = None;
+        for index in self.blocks.near(point, near) {
+            let vertex = &self.points[index];
             let lifted: [f64; N] =
                 std::array::from_fn(|k| vertex[k] + short_way(point[k] - vertex[k]));
             for segment in [index.wrapping_sub(1), index] {
-                if segment >= self.segments() {
+                if segment >= self.segments() || seen == Some(segment) {
                     continue;
                 }
+                seen = Some(segment);
                 if let Some((u, miss)) = self.segment(segment).project(&lifted)
                     && miss < tolerance
                     && best.is_none_or(|(_, _, least)| miss < least)
@@ -179,10 +177,10 @@ impl<const N: usize> Curve<N> {
 
 /// The difference of two angles taken the short way, in [−π, π].
 #[inline(always)]
-pub(crate) fn short_way(difference: f64) -> f64 {
-    const ROUND: f64 = 6_755_399_441_055_744.0;
-    let turns = (difference * (1.0 / TAU) + ROUND) - ROUND;
-    difference - turns * TAU
+pub(crate) fn short_way<T: Real>(difference: T) -> T {
+    let round = T::constant(6_755_399_441_055_744.0);
+    let turns = (difference * T::constant(1.0 / TAU) + round) - round;
+    difference - turns * T::constant(TAU)
 }
 
 /// Distance modulo full turns.

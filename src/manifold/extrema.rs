@@ -6,16 +6,16 @@
 
 use super::correct::correct;
 use super::curve::Curve;
-use crate::kinematics::{Goal, Kernel, dot};
+use super::prober::Prober;
+use crate::kinematics::dot;
 use smallvec::SmallVec;
 
 /// Extrema nearer to a vertex, or to each other, than this share of a segment need none of their own.
 const NEAR: f64 = 1e-3;
 
 /// Puts a vertex on the manifold at every extremum of every joint along `curve`.
-pub(super) fn resolve<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+pub(super) async fn resolve<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     curve: &mut Curve<N>,
 ) {
     let mut resolved = Curve::new();
@@ -25,7 +25,7 @@ pub(super) fn resolve<const N: usize, const M: usize>(
         shifts.push(resolved.points.len() - index);
         resolved.push(curve.points[index], curve.tangents[index]);
         if index < curve.segments() {
-            resolve_segment(kernel, goal, curve, index, &mut resolved);
+            resolve_segment(prober, curve, index, &mut resolved).await;
         }
     }
     curve.points = resolved.points;
@@ -35,9 +35,8 @@ pub(super) fn resolve<const N: usize, const M: usize>(
     }
 }
 
-fn resolve_segment<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+async fn resolve_segment<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     curve: &Curve<N>,
     index: usize,
     resolved: &mut Curve<N>,
@@ -53,7 +52,7 @@ fn resolve_segment<const N: usize, const M: usize>(
     places.dedup_by(|a, b| *a - *b < NEAR);
     for u in places {
         let guess = segment.at(u);
-        let Some((point, newton)) = correct(kernel, goal, &guess) else {
+        let Some((point, newton)) = correct(prober, &guess).await else {
             continue;
         };
         let moved: [f64; N] = std::array::from_fn(|k| point[k] - guess[k]);

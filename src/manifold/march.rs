@@ -6,9 +6,10 @@
 //! other way, shows as a tangent that points back.
 
 use super::TraceSettings;
-use super::correct::{correct, probe};
+use super::correct::correct;
 use super::curve::Curve;
-use crate::kinematics::{Goal, Kernel, NewtonStep, dot};
+use super::prober::Prober;
+use crate::kinematics::{NewtonStep, dot};
 
 /// First step of a curve; shorter loops than about three of these are not resolved.
 const FIRST_STEP: f64 = 0.02;
@@ -25,9 +26,8 @@ pub(super) enum Ending {
 }
 
 /// The state of a march.
-pub(super) struct March<'a, const N: usize, const M: usize> {
-    pub(super) kernel: &'a Kernel<N, M>,
-    pub(super) goal: &'a Goal<f64>,
+pub(super) struct March<'a, P, const N: usize, const M: usize> {
+    pub(super) prober: &'a P,
     settings: &'a TraceSettings,
     pub(super) point: [f64; N],
     /// Tangents at the last three vertices, newest first, and the two steps between them.
@@ -36,40 +36,41 @@ pub(super) struct March<'a, const N: usize, const M: usize> {
     /// +1 or −1: the march's direction relative to the cofactor field.
     pub(super) sense: f64,
     step: f64,
+    /// Cosine of the largest turn within a step.
+    least_cosine: f64,
 }
 
-pub(super) fn march<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+pub(super) async fn march<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     start: &[f64; N],
     sense: f64,
     settings: &TraceSettings,
     curve: &mut Curve<N>,
 ) -> Ending {
-    let Some(first) = probe(kernel, start, goal) else {
+    let Some(first) = prober.probe(start).await else {
         curve.push(*start, [0.0; N]);
         return Ending::Singular;
     };
     let tangent = first.tangent.map(|t| t * sense);
     curve.push(*start, tangent);
     let mut march = March {
-        kernel,
-        goal,
+        prober,
         settings,
         point: *start,
         tangents: [tangent; 3],
         steps: [FIRST_STEP; 2],
         sense,
         step: FIRST_STEP.min(settings.max_step),
+        least_cosine: settings.max_turn.cos(),
     };
     let mut vertices = 1;
     for _ in 0..settings.max_steps {
-        if !march.advance() {
+        if !march.advance().await {
             if march.step >= LEAST_STEP {
-                march.settle(curve);
+                march.settle(curve).await;
                 continue;
             }
-            if !march.cross_singularity() {
+            if !march.cross_singularity().await {
                 return Ending::Singular;
             }
             curve.crossings.push(vertices);
@@ -77,7 +78,7 @@ pub(super) fn march<const N: usize, const M: usize>(
         vertices += 1;
         curve.push(march.point, march.tangents[0]);
         if vertices > 3
-            && let Some(end) = march.back_at_start(curve)
+            && let Some(end) = march.back_at_start(curve).await
         {
             let last = curve.points.len() - 1;
             curve.points[last] = end;
@@ -85,20 +86,20 @@ pub(super) fn march<const N: usize, const M: usize>(
             return Ending::Closed;
         }
         if let Some((joint, outside)) = march.left_stroke(curve) {
-            march.end_at_stroke(curve, joint, outside);
+            march.end_at_stroke(curve, joint, outside).await;
             return Ending::Stroke;
         }
     }
     Ending::TooLong
 }
 
-impl<const N: usize, const M: usize> March<'_, N, M> {
+impl<P: Prober<N, M>, const N: usize, const M: usize> March<'_, P, N, M> {
     /// Tries one step; on failure the step is halved.
-    fn advance(&mut self) -> bool {
+    async fn advance(&mut self) -> bool {
         let h = self.step;
         let guess = self.predict(h);
-        let accepted =
-            probe(self.kernel, &guess, self.goal).and_then(|newton| self.judge(h, &guess, &newton));
+        let newton = self.prober.probe(&guess).await;
+        let accepted = newton.and_then(|newton| self.judge(h, &guess, &newton));
         let Some((point, tangent, correction)) = accepted else {
             self.step = 0.5 * h;
             return false;
@@ -116,15 +117,15 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
     ///
     /// What the first correction left is negligible for the vertex but not for the ever smaller
     /// steps around a sharp bend, where it would pass for the step's own error.
-    fn settle(&mut self, curve: &mut Curve<N>) {
-        let Some(newton) = probe(self.kernel, &self.point, self.goal) else {
+    async fn settle(&mut self, curve: &mut Curve<N>) {
+        let Some(newton) = self.prober.probe(&self.point).await else {
             return;
         };
         let correction = dot(&newton.correction, &newton.correction).sqrt();
         let tangent = newton.tangent.map(|t| t * self.sense);
         let small = correction <= self.settings.correction;
         let last = curve.points.len() - 1;
-        if last == 0 || !small || dot(&tangent, &self.tangents[0]) < self.settings.max_turn.cos() {
+        if last == 0 || !small || dot(&tangent, &self.tangents[0]) < self.least_cosine {
             return;
         }
         for k in 0..N {
@@ -169,7 +170,7 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
             return None;
         }
         let tangent = newton.tangent.map(|t| t * self.sense);
-        if dot(&tangent, &self.tangents[0]) < settings.max_turn.cos() {
+        if dot(&tangent, &self.tangents[0]) < self.least_cosine {
             return None;
         }
         let point: [f64; N] = std::array::from_fn(|k| guess[k] + newton.correction[k]);
@@ -189,10 +190,10 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
     ///
     /// There the cofactor field vanishes and points the other way behind; the march keeps the
     /// direction closest to the incoming one.
-    fn cross_singularity(&mut self) -> bool {
+    async fn cross_singularity(&mut self) -> bool {
         for h in [1e-4, 1e-3, 1e-2, 3e-2] {
             let guess: [f64; N] = std::array::from_fn(|k| self.point[k] + h * self.tangents[0][k]);
-            let Some((point, newton)) = correct(self.kernel, self.goal, &guess) else {
+            let Some((point, newton)) = correct(self.prober, &guess).await else {
                 continue;
             };
             // At a simple node the field turns round, at others it need not.

@@ -1,8 +1,9 @@
 //! Where a march ends: back at its start, or at the end of a prismatic joint's stroke.
 
-use super::correct::{full_turns, probe};
+use super::correct::full_turns;
 use super::curve::{Curve, short_way};
 use super::march::March;
+use super::prober::Prober;
 use super::segment::Segment;
 use crate::kinematics::dot;
 use std::f64::consts::FRAC_PI_2;
@@ -28,17 +29,17 @@ fn closure<const N: usize>(curve: &Curve<N>) -> Option<(Segment<N>, f64, [f64; N
     (miss < 2e-3 + 0.005 * chord.sqrt()).then_some((segment, u, lifted))
 }
 
-impl<const N: usize, const M: usize> March<'_, N, M> {
+impl<P: Prober<N, M>, const N: usize, const M: usize> March<'_, P, N, M> {
     /// The start, unwrapped, if the newest segment runs through it.
     ///
     /// Another strand may pass so near that only the manifold itself tells: from the segment,
     /// Newton steps within the plane across the start must lead to the start.
-    pub(super) fn back_at_start(&self, curve: &Curve<N>) -> Option<[f64; N]> {
+    pub(super) async fn back_at_start(&self, curve: &Curve<N>) -> Option<[f64; N]> {
         let (segment, u, start) = closure(curve)?;
         let across = &curve.tangents[0];
         let mut point = segment.at(u);
         for _ in 0..5 {
-            let Some(newton) = probe(self.kernel, &point, self.goal) else {
+            let Some(newton) = self.prober.probe(&point).await else {
                 break;
             };
             let tangent = newton.tangent.map(|t| t * self.sense);
@@ -60,7 +61,7 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
     /// at which it is outside; it may be back at the segment's end.
     pub(super) fn left_stroke(&self, curve: &Curve<N>) -> Option<(usize, f64)> {
         let outside = |joint: usize| {
-            if self.kernel.is_revolute(joint) {
+            if self.prober.kernel().is_revolute(joint) {
                 return None;
             }
             if self.point[joint].abs() > FRAC_PI_2 {
@@ -78,7 +79,12 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
     }
 
     /// Moves the newest vertex back to where `joint` leaves its stroke before parameter `outside`.
-    pub(super) fn end_at_stroke(&mut self, curve: &mut Curve<N>, joint: usize, mut outside: f64) {
+    pub(super) async fn end_at_stroke(
+        &mut self,
+        curve: &mut Curve<N>,
+        joint: usize,
+        mut outside: f64,
+    ) {
         let last = curve.points.len() - 1;
         let segment = curve.segment(last - 1);
         let limit = FRAC_PI_2.copysign(segment.coordinate(joint, outside));
@@ -94,7 +100,7 @@ impl<const N: usize, const M: usize> March<'_, N, M> {
         let mut point = segment.at(inside);
         let mut tangent = self.tangents[0];
         for _ in 0..4 {
-            let Some(newton) = probe(self.kernel, &point, self.goal) else {
+            let Some(newton) = self.prober.probe(&point).await else {
                 break;
             };
             tangent = newton.tangent.map(|t| t * self.sense);

@@ -3,6 +3,7 @@
 use super::SearchSettings;
 use super::any_solver::AnySolver;
 use super::self_motion::{SelfMotionManifold, joint_ranges};
+use super::solver::BATCH;
 use crate::angle::AngleSet;
 use crate::design::{Robot, TaskSpace};
 use crate::kinematics::{Chain, ChainJoint, Goal};
@@ -140,18 +141,66 @@ impl PreImageSearch {
     /// The pre-image of the tool pose `tool` (world frame; planar tasks use x, y and the angle
     /// about z, position tasks no rotation).
     pub fn find(&mut self, tool: &Isometry3<f64>, rng: &mut ChaCha8Rng) -> PreImage {
+        if let Some(nothing) = self.without_search(tool) {
+            return nothing;
+        }
         let goal = Goal::new(&self.chain, tool);
+        self.solver.solve(&goal, &self.settings, rng);
+        self.found()
+    }
+
+    /// The pre-images of many tool poses, each with its own random stream: bit for bit what
+    /// [`PreImageSearch::find`] gives for each, but faster, because eight searches compute their
+    /// Newton steps together.
+    pub fn find_all(&mut self, poses: &mut [(Isometry3<f64>, ChaCha8Rng)]) -> Vec<PreImage> {
+        let mut images = Vec::with_capacity(poses.len());
+        for batch in poses.chunks_mut(BATCH) {
+            self.find_batch(batch, &mut images);
+        }
+        images
+    }
+}
+
+impl PreImageSearch {
+    fn find_batch(
+        &mut self,
+        poses: &mut [(Isometry3<f64>, ChaCha8Rng)],
+        images: &mut Vec<PreImage>,
+    ) {
+        let known: Vec<Option<PreImage>> = poses
+            .iter()
+            .map(|(tool, _)| self.without_search(tool))
+            .collect();
+        let open = poses
+            .iter_mut()
+            .zip(&known)
+            .filter(|(_, known)| known.is_none());
+        let jobs = open.map(|((tool, rng), _)| (Goal::new(&self.chain, tool), rng));
+        let mut jobs: Vec<_> = jobs.collect();
+        self.solver.solve_all(&mut jobs, &self.settings);
+        let mut searched = 0..;
+        for known in known {
+            images.push(known.unwrap_or_else(|| {
+                self.solver.turn_to(searched.next().unwrap_or_default());
+                self.found()
+            }));
+        }
+    }
+
+    /// The pre-image of a pose that needs no search.
+    fn without_search(&self, tool: &Isometry3<f64>) -> Option<PreImage> {
         // The tool cannot be farther from joint 1 than all links together.
-        let [x, y, z] = goal.position;
+        let [x, y, z] = Goal::new(&self.chain, tool).position;
         let height = if self.task.is_planar() { 0.0 } else { z };
         let distance = x.hypot(y).hypot(height);
         if distance > self.reach * (1.0 + 1e-9) {
-            return self.nothing(Completeness::Proved);
+            return Some(self.nothing(Completeness::Proved));
         }
-        if !is_finite(tool) {
-            return self.nothing(Completeness::Unknown);
-        }
-        self.solver.solve(&goal, &self.settings, rng);
+        (!is_finite(tool)).then(|| self.nothing(Completeness::Unknown))
+    }
+
+    /// The pre-image that the solver has found.
+    fn found(&self) -> PreImage {
         let manifolds = self.solver.manifolds();
         let hits: Vec<usize> = manifolds.iter().map(|m| m.hits).collect();
         let (seeds, landed) = self.solver.effort();
@@ -163,9 +212,7 @@ impl PreImageSearch {
             landed,
         }
     }
-}
 
-impl PreImageSearch {
     fn nothing(&self, completeness: Completeness) -> PreImage {
         PreImage {
             joints: self.chain.len(),

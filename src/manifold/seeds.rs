@@ -5,7 +5,7 @@
 //! busy. Which start lands where depends only on the random stream: lanes compute bit for bit
 //! what a single one would, on every machine.
 
-use crate::kinematics::{Goal, Kernel, LANES, Lanes, Real, damped_step};
+use crate::kinematics::{Goal, Kernel, LANES, Lanes, Linearisation, Real, damped_step};
 use multiversion::multiversion;
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
@@ -21,8 +21,10 @@ const PATIENCE: u32 = 10;
 
 /// A stream of solutions of one task point.
 #[derive(Clone, Debug)]
-pub(crate) struct Seeder<const N: usize> {
+pub(crate) struct Seeder<const N: usize, const M: usize> {
     theta: [Lanes; N],
+    /// Room to work in.
+    linear: Linearisation<Lanes, N, M>,
     /// Iterations of every lane's start.
     age: [u32; LANES],
     /// Squared residual when the start was last checked for progress.
@@ -38,10 +40,11 @@ pub(crate) enum Seed<const N: usize> {
     Failed,
 }
 
-impl<const N: usize> Seeder<N> {
-    pub fn new<const M: usize>(kernel: &Kernel<N, M>, rng: &mut ChaCha8Rng) -> Seeder<N> {
+impl<const N: usize, const M: usize> Seeder<N, M> {
+    pub fn new(kernel: &Kernel<N, M>, rng: &mut ChaCha8Rng) -> Seeder<N, M> {
         let mut seeder = Seeder {
             theta: [Lanes::constant(0.0); N],
+            linear: Linearisation::new(),
             age: [0; LANES],
             mark: [f64::INFINITY; LANES],
             tried: 0,
@@ -53,7 +56,7 @@ impl<const N: usize> Seeder<N> {
     }
 
     /// A uniform start: on the circle, or in the stroke.
-    fn draw<const M: usize>(&mut self, kernel: &Kernel<N, M>, lane: usize, rng: &mut ChaCha8Rng) {
+    fn draw(&mut self, kernel: &Kernel<N, M>, lane: usize, rng: &mut ChaCha8Rng) {
         for (k, coordinate) in self.theta.iter_mut().enumerate() {
             let half = if kernel.is_revolute(k) { PI } else { 0.5 * PI };
             coordinate.0[lane] = rng.random_range(-half..half);
@@ -63,7 +66,7 @@ impl<const N: usize> Seeder<N> {
     }
 
     /// Iterates until at least one start has ended; hands every ended one to `take`.
-    pub fn next<const M: usize>(
+    pub fn next(
         &mut self,
         kernel: &Kernel<N, M>,
         goal: &Goal<Lanes>,
@@ -72,7 +75,7 @@ impl<const N: usize> Seeder<N> {
     ) {
         loop {
             let before = self.theta;
-            let square = iterate(kernel, goal, &mut self.theta);
+            let square = iterate(kernel, goal, &mut self.theta, &mut self.linear);
             let mut ended = false;
             for lane in 0..LANES {
                 self.age[lane] += 1;
@@ -98,7 +101,7 @@ impl<const N: usize> Seeder<N> {
         }
     }
 
-    fn in_stroke<const M: usize>(&self, kernel: &Kernel<N, M>, point: &[f64; N]) -> bool {
+    fn in_stroke(&self, kernel: &Kernel<N, M>, point: &[f64; N]) -> bool {
         (0..N).all(|k| kernel.is_revolute(k) || point[k].abs() <= 0.5 * PI)
     }
 
@@ -125,8 +128,9 @@ fn iterate<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<Lanes>,
     theta: &mut [Lanes; N],
+    linear: &mut Linearisation<Lanes, N, M>,
 ) -> Lanes {
-    let linear = kernel.linearise(theta, goal);
+    kernel.linearise_into(theta, goal, linear);
     let mut square = Lanes::constant(0.0);
     for residual in linear.residual {
         Lanes::keep_loop();
@@ -141,7 +145,7 @@ fn iterate<const N: usize, const M: usize>(
             0.02 * r2 + 1e-4
         };
     }
-    let step = damped_step(&linear, lambda);
+    let step = damped_step(linear, lambda);
     for k in 0..N {
         Lanes::keep_loop();
         let bounded = step[k].max(Lanes::constant(-1.0)).min(Lanes::constant(1.0));

@@ -1,14 +1,15 @@
 //! All self-motion manifolds of one task point, for robots with one degree of redundancy.
 
-use super::correct::correct;
-use super::curve::{Curve, CurveStatus, wrapped};
-use super::seeds::{Seed, Seeder};
-use super::trace::{TraceSettings, trace};
-use crate::kinematics::{Goal, Kernel, Lanes};
+use super::desk::Desk;
+use super::findings::Findings;
+use super::prober::{Alone, at_once};
+use super::trace::TraceSettings;
+use crate::kinematics::{Goal, Kernel};
 use crate::sampling::stream;
 use nalgebra::{DMatrix, SMatrix};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
+use std::cell::RefCell;
 
 /// How long manifolds are looked for.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -56,36 +57,29 @@ impl SearchSettings {
     }
 }
 
-/// Manifolds with a singular end after which a search stops: the task point then has a pre-image
-/// that is no set of curves, and every start would add another.
-const MOST_SINGULAR: usize = 16;
+/// Task points that are best searched at once: enough that the searches that end last, without
+/// neighbours, hardly count.
+pub(crate) const BATCH: usize = 64;
 
-/// Distance within which a solution lies on a known curve, internal radians.
-const ON_CURVE: f64 = 2e-3;
+/// A task point to search, with its own random stream.
+pub(crate) type Job<'a> = (Goal<f64>, &'a mut ChaCha8Rng);
 
-/// The search for one task point, with the storage it needs; reuse it for the next point.
+/// The search for task points, with the storage it needs; reuse it for the next ones.
 #[derive(Clone, Debug)]
 pub(crate) struct Solver<const N: usize, const M: usize> {
     pub kernel: Kernel<N, M>,
-    /// The curves found; only the first `found` are of this task point.
-    curves: Vec<Curve<N>>,
-    hits: Vec<usize>,
-    found: usize,
-    /// Starts made.
-    pub seeds: usize,
-    /// Starts that found the task.
-    pub landed: usize,
+    /// One for every task point of a batch.
+    findings: Vec<Findings<N>>,
+    /// The one that is looked at.
+    current: usize,
 }
 
 impl<const N: usize, const M: usize> Solver<N, M> {
     pub fn new(kernel: Kernel<N, M>) -> Solver<N, M> {
         Solver {
             kernel,
-            curves: Vec::new(),
-            hits: Vec::new(),
-            found: 0,
-            seeds: 0,
-            landed: 0,
+            findings: vec![Findings::new()],
+            current: 0,
         }
     }
 
@@ -110,118 +104,49 @@ impl<const N: usize, const M: usize> Solver<N, M> {
         (0..4).map(&mut rank).max().unwrap_or(0)
     }
 
-    /// The curves of the last task point.
-    pub fn curves(&self) -> &[Curve<N>] {
-        &self.curves[..self.found]
-    }
-
-    /// How often random starts landed on each curve.
-    pub fn hits(&self) -> &[usize] {
-        &self.hits[..self.found]
+    /// What was found for the last task point.
+    pub fn findings(&self) -> &Findings<N> {
+        &self.findings[self.current]
     }
 
     /// Finds all curves of `goal`.
     pub fn solve(&mut self, goal: &Goal<f64>, settings: &SearchSettings, rng: &mut ChaCha8Rng) {
-        self.found = 0;
-        self.landed = 0;
-        self.seeds = 0;
-        let lanes: Goal<Lanes> = goal.splat();
-        let mut seeder = Seeder::new(&self.kernel, rng);
-        let mut landed: Vec<[f64; N]> = Vec::with_capacity(8);
-        while !self.is_done(settings) {
-            landed.clear();
-            seeder.next(&self.kernel, &lanes, rng, |seed| {
-                if let Seed::Found(point) = seed {
-                    landed.push(point);
-                }
-            });
-            self.seeds = seeder.tried;
-            for point in &landed {
-                self.landed += 1;
-                self.assign(goal, point, settings);
-            }
-        }
-    }
-
-    fn is_done(&self, settings: &SearchSettings) -> bool {
-        if self.seeds >= settings.most_seeds {
-            return true;
-        }
-        if self.landed == 0 {
-            return self.seeds >= settings.unreachable_after;
-        }
-        let singular = |curve: &&Curve<N>| !curve.is_smooth();
-        self.seeds >= settings.least_seeds + settings.seeds_per_manifold * self.found
-            && self.hits().iter().all(|&hits| hits >= settings.least_hits)
-            && !self.is_unbalanced()
-            || self.curves().iter().filter(singular).count() >= MOST_SINGULAR
-    }
-
-    /// Whether the winding vectors prove that something is missing or wrong. They prove nothing
-    /// if curves end at strokes, lie outside them, or run through singular configurations.
-    fn is_unbalanced(&self) -> bool {
-        let closed = |curve: &Curve<N>| curve.is_smooth() && curve.status == CurveStatus::Closed;
-        (0..N).all(|joint| self.kernel.is_revolute(joint))
-            && self.curves().iter().all(closed)
-            && self.winding_sum() != [0; N]
-    }
-
-    /// Sum of the winding vectors of all closed curves, which run along the cofactor field.
-    pub fn winding_sum(&self) -> [i32; N] {
-        std::array::from_fn(|k| self.curves().iter().map(|curve| curve.winding[k]).sum())
-    }
-
-    /// Whether every curve closed smoothly (or ends at a stroke) and the winding vectors sum to
-    /// zero.
-    pub fn is_sound(&self) -> bool {
-        self.curves().iter().all(Curve::is_smooth) && !self.is_unbalanced()
-    }
-
-    /// Counts `seed` for the curve it lies on, or traces its own.
-    fn assign(&mut self, goal: &Goal<f64>, seed: &[f64; N], settings: &SearchSettings) {
-        // Newton steps fail only next to singular configurations.
-        let corrected = correct(&self.kernel, goal, seed);
-        let near = if corrected.is_some() {
-            ON_CURVE
-        } else {
-            5.0 * ON_CURVE
+        self.current = 0;
+        let prober = Alone {
+            kernel: &self.kernel,
+            goal,
         };
-        let point = corrected.map_or(*seed, |(point, _)| point);
-        let tangent = corrected.map(|(_, newton)| newton.tangent);
-        let located = |curve: &Curve<N>| curve.locate(&point, tangent.as_ref(), near).is_some();
-        if let Some(index) = self.curves().iter().position(located) {
-            self.hits[index] += 1;
-            return;
-        }
-        if self.curves.len() == self.found {
-            self.curves.push(Curve::new());
-            self.hits.push(0);
-        }
-        let start = wrapped(&point);
-        let (old, new) = self.curves.split_at_mut(self.found);
-        let curve = &mut new[0];
-        trace(&self.kernel, goal, &start, &settings.trace, curve);
-        // A point may miss its own curve between two long steps.
-        match old.iter().position(|old| is_same(old, curve)) {
-            Some(index) => self.hits[index] += 1,
-            None => {
-                self.hits[self.found] = 1;
-                self.found += 1;
-            }
-        }
+        at_once(self.findings[0].search(&prober, goal, settings, rng));
     }
-}
 
-/// Whether two traces follow the same curve: samples of the new one lie on the old one.
-fn is_same<const N: usize>(old: &Curve<N>, new: &Curve<N>) -> bool {
-    if old.status != new.status || (old.length - new.length).abs() > 0.01 * old.length + 1e-3 {
-        return false;
+    /// Finds all curves of many goals, each with its own random stream, as [`Solver::solve`] would;
+    /// see [`Solver::turn_to`].
+    pub fn solve_all(&mut self, jobs: &mut [Job<'_>], settings: &SearchSettings) {
+        if let [(goal, rng)] = jobs {
+            // A single search would wait for no one, but pay for eight.
+            return self.solve(goal, settings, rng);
+        }
+        if self.findings.len() < jobs.len() {
+            self.findings.resize_with(jobs.len(), Findings::new);
+        }
+        let desk = Desk::new(&self.kernel);
+        let queue = RefCell::new(jobs.iter_mut().zip(&mut self.findings));
+        // A search that has ended makes room for the next one.
+        desk.run(async |seat| {
+            loop {
+                let next = queue.borrow_mut().next();
+                let Some(((goal, rng), findings)) = next else {
+                    return;
+                };
+                seat.aim(goal);
+                findings.search(&seat, goal, settings, rng).await;
+            }
+        });
+        self.current = 0;
     }
-    let step = new.points.len().div_ceil(8);
-    let smooth = old.is_smooth() && new.is_smooth();
-    (0..new.points.len()).step_by(step).all(|index| {
-        let tangent = smooth.then_some(&new.tangents[index]);
-        old.locate(&new.points[index], tangent, 2.0 * ON_CURVE)
-            .is_some()
-    })
+
+    /// Makes the task point `index` of the last batch the one that is looked at.
+    pub fn turn_to(&mut self, index: usize) {
+        self.current = index;
+    }
 }

@@ -7,7 +7,7 @@ use super::extents::Extent;
 use super::pre_image::ManifoldError;
 use super::segment::Segment;
 use super::sliced::{Faces, Sliced};
-use super::solver::SearchSettings;
+use super::solver::{BATCH, SearchSettings};
 use crate::angle::{AngleSet, Arc};
 use crate::design::{Robot, TaskSpace};
 use crate::kinematics::{Chain, Goal};
@@ -208,20 +208,45 @@ impl CurveSource {
         match &mut self.method {
             Method::Curves(solver) => {
                 solver.solve(&Goal::new(&self.chain, tool), &self.settings, rng);
-                let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); self.chain.len()];
-                solver.show(|curve| {
-                    for (joint, arcs) in arcs.iter_mut().enumerate() {
-                        arcs.push(curve.range(joint));
-                    }
-                    show(curve);
-                });
-                arcs.into_iter().map(AngleSet::from_arcs).collect()
+                solver.show_with_ranges(show)
             }
             Method::Slices(sliced) => {
                 let ranges = sliced.solve(tool, rng, &mut show);
                 sliced.solve_walls(tool, rng, &mut show);
                 ranges
             }
+        }
+    }
+
+    /// Most task points that [`CurveSource::search_all`] should be given.
+    pub const BATCH: usize = BATCH;
+
+    /// Searches many task points together, each with its own random stream, where that is faster
+    /// than one after the other; [`CurveSource::show`] then gives for each what
+    /// [`CurveSource::solve`] would, bit for bit.
+    pub fn search_all(&mut self, poses: &mut [(Isometry3<f64>, ChaCha8Rng)]) {
+        if let Method::Curves(solver) = &mut self.method {
+            let goal = |tool: &Isometry3<f64>| Goal::new(&self.chain, tool);
+            let jobs = poses.iter_mut().map(|(tool, rng)| (goal(tool), rng));
+            solver.solve_all(&mut jobs.collect::<Vec<_>>(), &self.settings);
+        }
+    }
+
+    /// Shows the curves of task point `index` of the last [`CurveSource::search_all`], to be given
+    /// once more, and returns the range Θ of every joint. The other methods then speak of this
+    /// task point.
+    pub fn show(
+        &mut self,
+        index: usize,
+        (tool, rng): &mut (Isometry3<f64>, ChaCha8Rng),
+        show: impl FnMut(CurveRef<'_>),
+    ) -> Vec<AngleSet> {
+        match &mut self.method {
+            Method::Curves(solver) => {
+                solver.turn_to(index);
+                solver.show_with_ranges(show)
+            }
+            Method::Slices(_) => self.solve(tool, rng, show),
         }
     }
 
@@ -282,6 +307,18 @@ impl AnySolver {
     /// Shows every curve of the last task point.
     pub(super) fn show(&self, show: impl FnMut(CurveRef<'_>)) {
         self.visit(&mut Show(show));
+    }
+
+    /// Shows every curve of the last task point; returns the range of every joint.
+    fn show_with_ranges(&self, mut show: impl FnMut(CurveRef<'_>)) -> Vec<AngleSet> {
+        let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); self.joints()];
+        self.show(|curve| {
+            for (joint, arcs) in arcs.iter_mut().enumerate() {
+                arcs.push(curve.range(joint));
+            }
+            show(curve);
+        });
+        arcs.into_iter().map(AngleSet::from_arcs).collect()
     }
 }
 

@@ -5,7 +5,7 @@ use super::correct::polish;
 use super::curve::{Curve, CurveStatus};
 use super::extrema::resolve;
 use super::march::{Ending, march};
-use crate::kinematics::{Goal, Kernel};
+use super::prober::Prober;
 
 /// Accuracy and guards of tracing. Angles and distances are in (internal) radians.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -69,16 +69,15 @@ const RETRIES: usize = 2;
 /// The curve runs along the cofactor field at `start`. If it does not close, it is followed both
 /// ways, and `start` lies inside it. A curve that ends at a singular configuration or runs
 /// through one is traced again with finer steps, which tell a sharp bend from a node.
-pub(crate) fn trace<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+pub(super) async fn trace<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     start: &[f64; N],
     settings: &TraceSettings,
     curve: &mut Curve<N>,
 ) {
     let mut settings = *settings;
     for _ in 0..=RETRIES {
-        trace_once(kernel, goal, start, &settings, curve);
+        trace_once(prober, start, &settings, curve).await;
         // A curve that is too long would only become longer.
         if curve.is_smooth() || curve.status == CurveStatus::TooLong {
             break;
@@ -86,27 +85,26 @@ pub(crate) fn trace<const N: usize, const M: usize>(
         settings = settings.finer();
     }
     for _ in 0..settings.polish {
-        polish(kernel, goal, settings.correction, curve);
+        polish(prober, settings.correction, curve).await;
     }
     if settings.polish > 0 {
-        resolve(kernel, goal, curve);
+        resolve(prober, curve).await;
     }
     curve.measure();
 }
 
-fn trace_once<const N: usize, const M: usize>(
-    kernel: &Kernel<N, M>,
-    goal: &Goal<f64>,
+async fn trace_once<const N: usize, const M: usize>(
+    prober: &impl Prober<N, M>,
     start: &[f64; N],
     settings: &TraceSettings,
     curve: &mut Curve<N>,
 ) {
     curve.clear();
-    let ending = march(kernel, goal, start, 1.0, settings, curve);
+    let ending = march(prober, start, 1.0, settings, curve).await;
     curve.status = status_of(ending, None);
     if ending != Ending::Closed {
         let mut other = Curve::new();
-        let back = march(kernel, goal, start, -1.0, settings, &mut other);
+        let back = march(prober, start, -1.0, settings, &mut other).await;
         curve.status = status_of(ending, Some(back));
         join(curve, other);
     }

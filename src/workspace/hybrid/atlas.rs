@@ -189,23 +189,22 @@ impl AtlasRecipe {
         const PILOT: u64 = 96;
         let stride = (self.plan.len() / PILOT).max(1);
         let started = Instant::now();
-        let picks: Vec<u64> = (0..self.plan.len()).step_by(stride as usize).collect();
-        let bytes: u64 = picks
-            .iter()
-            .map(|&index| {
-                let mut source = self.source.clone();
-                self.block(&mut source, index..index + 1).to_bytes().len() as u64 - 40
-            })
-            .sum();
-        let scale = self.plan.len() as f64 / picks.len().max(1) as f64;
+        let picks = (0..self.plan.len()).step_by(stride as usize);
+        let block = self.block(&mut self.source.clone(), picks.clone());
+        let bytes = block.to_bytes().len() as u64 - 40;
+        let scale = self.plan.len() as f64 / picks.count().max(1) as f64;
         Prediction {
             bytes: (bytes as f64 * scale) as u64,
             core_seconds: started.elapsed().as_secs_f64() * scale,
         }
     }
 
-    fn block(&self, source: &mut CurveSource, range: Range<u64>) -> super::block::BlockBuilder {
-        build_block(source, &mut self.packing.clone(), &self.plan, range)
+    fn block(
+        &self,
+        source: &mut CurveSource,
+        indices: impl Iterator<Item = u64>,
+    ) -> super::block::BlockBuilder {
+        build_block(source, &mut self.packing.clone(), &self.plan, indices)
     }
 
     /// Builds the atlas, or reads what `store` has of it; new shards are written to the store.

@@ -9,6 +9,7 @@ use super::turn16::{Arc16, STEP, angle, arcs16, quantise};
 use crate::angle::{AngleSet, Arc};
 use crate::manifold::{CurveRef, CurveSource, Extent, Faces};
 use crate::workspace::ArtificialLimits;
+use rand_chacha::ChaCha8Rng;
 
 /// What is kept of a pre-image, and how closely.
 #[derive(Clone, Debug)]
@@ -30,25 +31,29 @@ pub(super) struct Focus {
     pub faces: Option<Faces>,
 }
 
-/// Packs the samples `range` of `plan` into one block.
+/// Packs the samples `indices` of `plan` into one block.
 ///
-/// The result depends on the plan and the range alone.
+/// The result depends on the plan and the indices alone.
 pub(super) fn build_block(
     source: &mut CurveSource,
     packing: &mut Packing,
     plan: &SamplePlan,
-    range: std::ops::Range<u64>,
+    indices: impl Iterator<Item = u64>,
 ) -> BlockBuilder {
     let mut packer = Packer::new(source.joints(), packing);
-    for index in range {
+    let mut batch = Vec::with_capacity(CurveSource::BATCH);
+    for index in indices {
         let sample = plan.sample(index);
         packer.block.samples += 1;
         if sample.tool.translation.vector.norm() > plan.region.reach {
             continue;
         }
-        packer.add(source, packing, plan, index, &sample);
-        packer.block.seeds += source.seeds() as u64;
+        batch.push((index, sample));
+        if batch.len() == CurveSource::BATCH {
+            packer.add_all(source, packing, plan, &mut batch);
+        }
     }
+    packer.add_all(source, packing, plan, &mut batch);
     packer.block
 }
 
@@ -98,28 +103,44 @@ impl Packer {
         }
     }
 
-    fn add(
+    /// Packs the pre-images of a batch of samples, which is empty afterwards.
+    fn add_all(
         &mut self,
         source: &mut CurveSource,
         packing: &mut Packing,
         plan: &SamplePlan,
-        index: u64,
-        sample: &Sample,
+        batch: &mut Vec<(u64, Sample)>,
     ) {
-        self.parts.clear();
-        self.image.clear();
-        self.curves = 0;
-        let mut rng = plan.search_stream(index);
-        let free = source.solve(&sample.tool, &mut rng, |curve| {
-            self.push_curve(&curve, true)
-        });
+        let pose = |(index, sample): &(u64, Sample)| (sample.tool, plan.search_stream(*index));
+        let mut poses: Vec<_> = batch.iter().map(pose).collect();
+        source.search_all(&mut poses);
+        for (nth, ((index, sample), pose)) in batch.drain(..).zip(&mut poses).enumerate() {
+            self.parts.clear();
+            self.image.clear();
+            self.curves = 0;
+            let free = source.show(nth, pose, |curve| self.push_curve(&curve, true));
+            self.add(source, packing, (index, &sample), free, &mut pose.1);
+            self.block.seeds += source.seeds() as u64;
+        }
+    }
+
+    /// Packs the sample whose curves have been pushed and whose joints have the ranges `free`
+    /// without physical limits.
+    fn add(
+        &mut self,
+        source: &mut CurveSource,
+        packing: &mut Packing,
+        (index, sample): (u64, &Sample),
+        free: Vec<AngleSet>,
+        rng: &mut ChaCha8Rng,
+    ) {
         if let Some(Focus {
             faces: Some(faces), ..
         }) = &mut packing.focus
         {
             let found = self.curves;
             if found > 0 {
-                source.solve_faces(&sample.tool, faces, &mut rng, |curve| {
+                source.solve_faces(&sample.tool, faces, rng, |curve| {
                     self.push_curve(&curve, false);
                 });
             }
