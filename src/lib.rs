@@ -15,4 +15,5 @@ pub mod optimiser;
 pub mod report;
 pub mod sampling;
 pub mod study;
+pub mod surrogate;
 pub mod workspace;

@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every module with all it may import from, in order: a module may only name earlier ones.
-const MODULES: [(&str, &[&str]); 12] = [
+const MODULES: [(&str, &[&str]); 13] = [
     ("angle", &[]),
     ("sampling", &[]),
     ("diagnostic", &[]),
@@ -27,6 +27,10 @@ const MODULES: [(&str, &[&str]); 12] = [
             "workspace",
         ],
     ),
+    (
+        "surrogate",
+        &["angle", "sampling", "design", "workspace", "objective"],
+    ),
     ("optimiser", &["sampling", "objective"]),
     ("report", &["angle", "workspace"]),
     (
@@ -40,6 +44,7 @@ const MODULES: [(&str, &[&str]); 12] = [
             "manifold",
             "workspace",
             "objective",
+            "surrogate",
             "optimiser",
             "report",
         ],

@@ -10,7 +10,6 @@ use crate::sampling;
 use argmin::core::{Error, KV, Problem, Solver, State, TerminationStatus};
 use rand::Rng;
 use rand_chacha::ChaCha8Rng;
-use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::sync::atomic::AtomicBool;
@@ -90,13 +89,9 @@ impl Genetic {
     /// Scores in parallel; order and therefore results do not depend on the threads.
     fn evaluate(&mut self, objective: &dyn Objective, points: Vec<Vec<f64>>) -> Vec<Candidate> {
         self.evaluations += points.len() as u64;
-        points
-            .into_par_iter()
-            .map(|x| {
-                let score = objective.score(&x);
-                Candidate { x, score }
-            })
-            .collect()
+        let scores = objective.scores(&points);
+        let pairs = points.into_iter().zip(scores);
+        pairs.map(|(x, score)| Candidate { x, score }).collect()
     }
 
     /// Replaces the population, best first; ties keep their order.

@@ -5,7 +5,9 @@ use super::settings::{
     CoordinateAscent, DegreeLimits, Estimator, Genetic, ManifoldSearch, OptimiserSettings, Pose,
     Question, ReportSettings, Study,
 };
+use super::surrogate_settings::{SurrogateSettings, Train, Training, Validate};
 use crate::design::TaskSpace;
+use crate::surrogate::Draw;
 use crate::workspace::FailureSet;
 use serde::Serialize;
 use std::path::{Component, Path};
@@ -29,13 +31,50 @@ struct AsRun<'a> {
     seed: u64,
     task: Task,
     limits: Option<&'a DegreeLimits>,
-    estimator: Option<&'a Estimator>,
+    estimator: Option<EstimatorTable<'a>>,
     estimate: Option<EstimateTable<'a>>,
     search: Option<SearchTable<'a>>,
     optimiser: Option<OptimiserTable<'a>>,
     pose: Option<&'a Pose>,
     manifolds: Option<&'a ManifoldSearch>,
+    dataset: Option<DatasetTable<'a>>,
+    surrogate: Option<&'a SurrogateSettings>,
+    training: Option<&'a Training>,
+    validate: Option<ValidateTable>,
     report: &'a ReportSettings,
+}
+
+#[derive(Serialize)]
+#[serde(untagged)]
+enum EstimatorTable<'a> {
+    Own(&'a Estimator),
+    Surrogate {
+        method: &'static str,
+        surrogate: SurrogateTable,
+    },
+}
+
+#[derive(Serialize)]
+struct SurrogateTable {
+    model: String,
+    polish: bool,
+    compare: bool,
+}
+
+#[derive(Serialize)]
+struct DatasetTable<'a> {
+    designs: u64,
+    walk_share: f64,
+    cells: u64,
+    link_lower: Option<&'a [f64]>,
+    link_upper: Option<&'a [f64]>,
+}
+
+#[derive(Serialize)]
+struct ValidateTable {
+    models: Vec<String>,
+    designs: u64,
+    draw: Draw,
 }
 
 #[derive(Serialize)]
@@ -83,12 +122,16 @@ impl<'a> AsRun<'a> {
                 failures: failures(&study.failures, study.design.robot.joints()),
             },
             limits: None,
-            estimator: Some(&study.estimator),
+            estimator: Some(EstimatorTable::new(&study.estimator, folder)),
             estimate: None,
             search: None,
             optimiser: None,
             pose: None,
             manifolds: None,
+            dataset: None,
+            surrogate: None,
+            training: None,
+            validate: None,
             report: &study.report,
         };
         match &study.question {
@@ -115,8 +158,27 @@ impl<'a> AsRun<'a> {
                 as_run.pose = Some(&manifolds.pose);
                 as_run.manifolds = Some(&manifolds.search);
             }
+            Question::Train(train) => as_run.add_training(train),
+            Question::Validate(validate) => {
+                as_run.estimator = None;
+                as_run.validate = Some(ValidateTable::new(validate, folder));
+            }
         }
         as_run
+    }
+
+    fn add_training(&mut self, train: &'a Train) {
+        let (data, links) = (&train.dataset, train.dataset.links.as_ref());
+        self.estimator = None;
+        self.dataset = Some(DatasetTable {
+            designs: data.designs,
+            walk_share: data.walk_share,
+            cells: data.cells,
+            link_lower: links.map(|links| links.link_lower.as_slice()),
+            link_upper: links.map(|links| links.link_upper.as_slice()),
+        });
+        self.surrogate = Some(&train.surrogate);
+        self.training = Some(&train.training);
     }
 }
 
@@ -130,6 +192,35 @@ impl<'a> OptimiserTable<'a> {
             method: settings.method(),
             coordinate_ascent,
             genetic,
+        }
+    }
+}
+
+impl<'a> EstimatorTable<'a> {
+    fn new(estimator: &'a Estimator, folder: &Path) -> EstimatorTable<'a> {
+        let Estimator::Surrogate { surrogate } = estimator else {
+            return EstimatorTable::Own(estimator);
+        };
+        EstimatorTable::Surrogate {
+            method: "surrogate",
+            surrogate: SurrogateTable {
+                model: relative(&surrogate.model.path, &resolve(folder)),
+                polish: surrogate.polish,
+                compare: surrogate.compare,
+            },
+        }
+    }
+}
+
+impl ValidateTable {
+    fn new(validate: &Validate, folder: &Path) -> ValidateTable {
+        let models = validate.models.iter();
+        ValidateTable {
+            models: models
+                .map(|model| relative(&model.path, &resolve(folder)))
+                .collect(),
+            designs: validate.designs,
+            draw: validate.draw,
         }
     }
 }

@@ -5,6 +5,7 @@ use super::settings::Study;
 use crate::diagnostic::{InputError, Problem};
 use crate::optimiser::{CoordinateAscent, Genetic, HistoryPoint, Snapshot};
 use crate::report::write_bytes;
+use crate::surrogate::Training;
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -23,6 +24,7 @@ const INTERVAL: Duration = Duration::from_millis(200);
 pub(super) enum Stage {
     Ascent(Box<Snapshot<CoordinateAscent>>),
     Genetic(Box<Snapshot<Genetic>>),
+    Training(Box<Training>),
     /// A local stage, with the records of those before it.
     Local {
         before: Vec<Record>,
@@ -41,6 +43,8 @@ pub(super) struct Record {
     pub evaluations: u64,
     pub history: Vec<HistoryPoint>,
     pub converged: bool,
+    /// Exact score of the best of the last candidates, where a surrogate has scored them.
+    pub rescored: Option<f64>,
 }
 
 #[derive(Serialize, Deserialize)]

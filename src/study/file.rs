@@ -7,6 +7,7 @@ use super::hybrid_table::{self, HybridTable};
 use super::pose_table::{self, ManifoldsTable, PoseTable};
 use super::search::{self, OptimiserTable, SearchTable};
 use super::settings::{EstimatorMethod, FigureFormat};
+use super::surrogate_table::{self, SurrogateEstimatorTable, TrainTable, ValidateTable};
 use crate::design::TaskSpace;
 use crate::diagnostic::{Document, InputError, Item, Place, Source, Table, nearest};
 
@@ -24,10 +25,14 @@ const KEYS: &[&str] = &[
     "optimiser",
     "pose",
     "manifolds",
+    "dataset",
+    "surrogate",
+    "training",
+    "validate",
     "report",
 ];
 
-/// Kinds of studies that exist or are planned; the first three are served.
+/// Kinds of studies that exist or are planned; the first five are served.
 const KINDS: [&str; 7] = [
     "estimate",
     "optimise",
@@ -60,6 +65,10 @@ pub struct StudyFile {
     pub(super) optimiser: Option<Item<OptimiserTable>>,
     pub(super) pose: Option<Item<PoseTable>>,
     pub(super) manifolds: Option<Item<ManifoldsTable>>,
+    pub(super) train: Option<TrainTable>,
+    /// Where the first of `[dataset]`, `[surrogate]` and `[training]` stands.
+    pub(super) train_place: Option<Place>,
+    pub(super) validate: Option<Item<ValidateTable>>,
     pub(super) formats: Option<Item<Vec<Item<FigureFormat>>>>,
     pub(super) figures: Option<bool>,
 }
@@ -70,6 +79,8 @@ pub(super) enum Kind {
     Estimate,
     Optimise,
     Manifolds,
+    Train,
+    Validate,
 }
 
 /// `failures = "any"` or a list of joint numbers from 1.
@@ -95,6 +106,7 @@ pub(super) struct EstimatorTable {
     pub method: Option<Item<EstimatorMethod>>,
     pub tolerance: Option<f64>,
     pub hybrid: Option<HybridTable>,
+    pub surrogate: Option<SurrogateEstimatorTable>,
     /// Where the table stands, if it does.
     pub place: Option<Place>,
 }
@@ -131,7 +143,7 @@ fn read(root: &Table) -> Option<StudyFile> {
     let design = root.text("design");
     let task = root.table("task", &["space", "failures"]);
     let space = task.as_ref().and_then(read_space);
-    let estimator = root.table("estimator", &["method", "tolerance", "hybrid"]);
+    let estimator = root.table("estimator", &["method", "tolerance", "hybrid", "surrogate"]);
     let report = root.table("report", &["formats", "figures"]);
     let file = StudyFile {
         title: root.text("title").map(|item| item.value),
@@ -145,6 +157,7 @@ fn read(root: &Table) -> Option<StudyFile> {
                 .and_then(|table| table.number("tolerance", 1e-6..=1e-1, ""))
                 .map(|item| item.value),
             hybrid: estimator.as_ref().and_then(hybrid_table::read),
+            surrogate: estimator.as_ref().and_then(surrogate_table::read_estimator),
             place: root.key_place("estimator"),
         },
         estimate: read_estimate(root),
@@ -152,6 +165,14 @@ fn read(root: &Table) -> Option<StudyFile> {
         optimiser: search::read_optimiser(root),
         pose: pose_table::read_pose(root),
         manifolds: pose_table::read_manifolds(root),
+        train: match kind.as_ref().map(|kind| kind.value) {
+            Some(Kind::Train) => surrogate_table::read_train(root),
+            _ => None,
+        },
+        train_place: ["dataset", "surrogate", "training"]
+            .into_iter()
+            .find_map(|key| root.key_place(key)),
+        validate: surrogate_table::read_validate(root),
         formats: report.as_ref().and_then(read_formats),
         figures: report
             .and_then(|table| table.boolean("figures"))
@@ -169,6 +190,8 @@ fn read_kind(root: &Table) -> Option<Item<Kind>> {
         "estimate" => Kind::Estimate,
         "optimise" => Kind::Optimise,
         "manifolds" => Kind::Manifolds,
+        "train" => Kind::Train,
+        "validate" => Kind::Validate,
         other => {
             let (message, help) = match nearest(other, &KINDS) {
                 Some(planned) if planned == other => (
@@ -181,7 +204,7 @@ fn read_kind(root: &Table) -> Option<Item<Kind>> {
                 ),
                 None => ("unknown kind of study", String::new()),
             };
-            let expected = "\"estimate\", \"optimise\" or \"manifolds\"";
+            let expected = "\"estimate\", \"optimise\", \"manifolds\", \"train\" or \"validate\"";
             root.problems()
                 .reject(&text.place, message, expected, &help);
             return None;
@@ -230,6 +253,7 @@ fn read_method(table: &Table) -> Option<Item<EstimatorMethod>> {
     let methods = [
         ("exact", EstimatorMethod::Exact),
         ("hybrid", EstimatorMethod::Hybrid),
+        ("surrogate", EstimatorMethod::Surrogate),
     ];
     table.choice("method", &methods)
 }
@@ -275,7 +299,7 @@ mod tests {
 
     #[test]
     fn kinds_are_named() {
-        let planned = error(&HEAD.replace("estimate", "train"));
+        let planned = error(&HEAD.replace("estimate", "singularities"));
         assert!(planned.problem().message.contains("does not serve"));
         let misspelt = error(&HEAD.replace("estimate", "optimize"));
         assert!(misspelt.problem().help.contains("\"optimise\""));

@@ -63,7 +63,7 @@ pub(super) fn run(
             run.write(&atlas, &estimate.limits, &limits, None)
         }
         Question::Optimise(optimise) => run.optimise(optimise, atlas),
-        Question::Manifolds(_) => {
+        Question::Manifolds(_) | Question::Train(_) | Question::Validate(_) => {
             Err(anyhow::anyhow!("a study of manifolds measures no workspace").into())
         }
     }?;
@@ -130,15 +130,17 @@ impl Run<'_> {
         });
         let objective = score(atlas);
         let start = optimise.start.as_ref();
+        let start = start.map(|start| space.point(&start.to_limits(robot)));
         let terms = Terms {
             space: &space,
             objective: &objective,
             samples: Some(atlas.plan().len()),
             coarse: coarse.collect(),
-            start: start.map(|start| space.point(&start.to_limits(robot))),
+            start,
             max_sweeps: SWEEPS,
             tolerance: TOLERANCE,
             short_step: SHORT_STEP,
+            truth: None,
         };
         let saved = self.ready.saved.take();
         let optimum = search(optimise, &terms, study.seed, saved, &self.ready.session)?;

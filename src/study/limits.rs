@@ -132,7 +132,18 @@ fn link_bounds(
     problems: &Problems,
     robot: &Robot,
 ) -> Option<LinkBounds> {
-    let (lower, upper) = match (&table.value.link_lower, &table.value.link_upper) {
+    let table = &table.value;
+    bounds(&table.link_lower, &table.link_upper, problems, robot)
+}
+
+/// Bounds of link lengths whose sum can be the robot's.
+pub(super) fn bounds(
+    lower: &Option<Item<Vec<Item<f64>>>>,
+    upper: &Option<Item<Vec<Item<f64>>>>,
+    problems: &Problems,
+    robot: &Robot,
+) -> Option<LinkBounds> {
+    let (lower, upper) = match (lower, upper) {
         (Some(lower), Some(upper)) => (lower, upper),
         (None, None) => return None,
         (Some(given), None) => return report_lone(problems, &given.place, "link_upper"),

@@ -33,7 +33,16 @@ mod serve;
 mod settings;
 mod shards;
 mod spatial_picture;
+mod surrogate_check;
+mod surrogate_search;
+mod surrogate_settings;
+mod surrogate_table;
+mod train_report;
+mod train_run;
 mod validate;
+mod validate_picture;
+mod validate_report;
+mod validate_run;
 
 pub use file::StudyFile;
 pub use folder::check_folder;
@@ -46,3 +55,7 @@ pub use settings::{
     ReportSettings, Search, Study,
 };
 pub use shards::{MergeReport, Part, ShardReport, build_part, merge};
+pub use surrogate_settings::{
+    Arcs, DatasetSettings, DecoderKind, Mdn, ModelFile, SurrogateEstimator, SurrogateMethod,
+    SurrogateSettings, Train, Training, Validate,
+};

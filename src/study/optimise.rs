@@ -21,7 +21,8 @@ use rand::Rng;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::sync::Arc;
-use std::sync::atomic::AtomicBool;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::Instant;
 
 /// Starting points of the local stage.
 const POLISHED: usize = 5;
@@ -49,6 +50,16 @@ pub(super) struct Terms<'a> {
     pub tolerance: f64,
     /// Length up to which steps are short.
     pub short_step: f64,
+    /// The exact score, if `objective` is a surrogate's.
+    pub truth: Option<Truth<'a>>,
+}
+
+/// What decides between the last candidates of a search through a surrogate.
+#[derive(Clone, Copy)]
+pub(super) struct Truth<'a> {
+    pub objective: &'a dyn Objective,
+    /// Whether the best of them is refined.
+    pub polish: bool,
 }
 
 /// The score estimated from a part of the samples.
@@ -91,18 +102,20 @@ impl Terms<'_> {
 
     /// The stages after the global one.
     fn local_stages(&self, optimise: &Optimise) -> Vec<Local<'_>> {
-        let ascent = match &optimise.optimiser {
-            OptimiserSettings::CoordinateAscent(ascent) => ascent,
-            OptimiserSettings::Genetic(genetic) if genetic.polish => {
-                return vec![Local {
-                    name: "polish",
-                    objective: self.objective,
-                    samples: self.samples,
-                    finalists: None,
-                    settings: self.within_reason(Default::default()),
-                }];
+        let polish = |objective| Local {
+            name: "polish",
+            objective,
+            samples: self.samples,
+            finalists: None,
+            settings: self.within_reason(Default::default()),
+        };
+        let ascent = match (&optimise.optimiser, self.truth) {
+            (_, Some(truth)) if truth.polish => return vec![polish(truth.objective)],
+            (OptimiserSettings::Genetic(genetic), None) if genetic.polish => {
+                return vec![polish(self.objective)];
             }
-            OptimiserSettings::Genetic(_) => return Vec::new(),
+            (_, Some(_)) | (OptimiserSettings::Genetic(_), None) => return Vec::new(),
+            (OptimiserSettings::CoordinateAscent(ascent), None) => ascent,
         };
         let settings = self.within_reason(ascent_settings(ascent));
         let finer = self.coarse.iter().skip(1);
@@ -138,7 +151,8 @@ impl Optimum {
     }
 
     pub fn score(&self) -> f64 {
-        self.last().best_score
+        let last = self.last();
+        last.rescored.unwrap_or(last.best_score)
     }
 
     pub fn evaluations(&self) -> u64 {
@@ -189,7 +203,10 @@ pub(super) fn search(
         // The snapshot holds the starts of its stage itself.
         Some(Stage::Local { before, snapshot }) => (before, Vec::new(), Some(snapshot)),
         other => {
-            let ended = global_stage(optimise, terms, seed, other, session)?;
+            let mut ended = global_stage(optimise, terms, seed, other, session)?;
+            if let Some(truth) = terms.truth {
+                ended.rescore(truth.objective);
+            }
             (vec![ended.record], ended.candidates, None)
         }
     };
@@ -293,10 +310,88 @@ fn global_stage(
     Ok(ended)
 }
 
+/// A search that was given some time.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Timed {
+    pub best_score: f64,
+    pub evaluations: u64,
+    pub seconds: f64,
+    /// Whether it ended before its time was over.
+    pub ended_by_itself: bool,
+}
+
+/// Runs the global stage of `optimise` alone for at most about `seconds`. Unlike everything else
+/// its result depends on the machine.
+///
+/// # Errors
+/// None is expected.
+pub(super) fn search_for(
+    optimise: &Optimise,
+    terms: &Terms,
+    seed: u64,
+    seconds: f64,
+) -> Result<Timed, RunError> {
+    let objective = terms.objective;
+    match &optimise.optimiser {
+        OptimiserSettings::CoordinateAscent(ascent) => {
+            let settings = terms.within_reason(ascent_settings(ascent));
+            timed(
+                objective,
+                CoordinateAscent::new(settings, seed, Vec::new()),
+                seconds,
+            )
+        }
+        OptimiserSettings::Genetic(genetic) => {
+            let solver = Genetic::new(genetic_settings(genetic), seed, Vec::new());
+            timed(objective, solver, seconds)
+        }
+    }
+}
+
+fn timed<S>(objective: &dyn Objective, solver: S, seconds: f64) -> Result<Timed, RunError>
+where
+    S: Search + Clone + Serialize + DeserializeOwned + Send + Sync + 'static,
+    S: for<'p> Solver<Maximise<'p>, SearchState>,
+{
+    let started = Instant::now();
+    let over = Arc::new(AtomicBool::new(false));
+    let raise = over.clone();
+    let control = Control {
+        interrupt: over,
+        on_progress: Arc::new(move |_, _| {
+            if started.elapsed().as_secs_f64() >= seconds {
+                raise.store(true, Ordering::Relaxed);
+            }
+        }),
+        on_snapshot: Arc::new(|_: &S, _: &SearchState| Ok(())),
+    };
+    let (snapshot, interrupted) = run_search(objective, solver, None, control)?;
+    let solver = snapshot.solver;
+    let best = solver.candidates().first().map(|best| best.score);
+    Ok(Timed {
+        best_score: best.unwrap_or(0.0),
+        evaluations: solver.evaluations(),
+        seconds: started.elapsed().as_secs_f64(),
+        ended_by_itself: !interrupted,
+    })
+}
+
 /// A stage that has run to its end.
 struct Ended {
     candidates: Vec<Candidate>,
     record: Record,
+}
+
+impl Ended {
+    /// Orders the candidates by `objective`, best first.
+    fn rescore(&mut self, objective: &dyn Objective) {
+        let points: Vec<Vec<f64>> = self.candidates.iter().map(|c| c.x.clone()).collect();
+        for (candidate, score) in self.candidates.iter_mut().zip(objective.scores(&points)) {
+            candidate.score = score;
+        }
+        self.candidates.sort_by(|a, b| b.score.total_cmp(&a.score));
+        self.record.rescored = self.candidates.first().map(|best| best.score);
+    }
 }
 
 fn stage<S>(
@@ -347,6 +442,7 @@ where
         evaluations: solver.evaluations(),
         history: solver.history().to_vec(),
         converged: solver.converged(),
+        rescored: None,
     };
     Ok(Ended { candidates, record })
 }

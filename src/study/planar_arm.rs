@@ -1,6 +1,6 @@
 //! The planar robot of a study, and the exact measurements a study asks for.
 
-use super::settings::{Estimator, Optimise, Study};
+use super::settings::{EXACT_TOLERANCE, Estimator, Optimise, Study};
 use crate::angle::wrap;
 use crate::design::TaskSpace;
 use crate::objective::{DesignSpace, PlanarObjective, PlanarTask};
@@ -31,6 +31,7 @@ impl PlanarStudy {
         let chain = study.design.robot.planar_chain()?;
         let tolerance = match study.estimator {
             Estimator::Exact { tolerance } => tolerance,
+            Estimator::Surrogate { .. } => EXACT_TOLERANCE,
             Estimator::Hybrid { .. } => anyhow::bail!("a hybrid study for the exact estimator"),
         };
         let resolution = PoseResolution::for_tolerance(tolerance);

@@ -6,7 +6,8 @@ use super::planar_arm::PlanarStudy;
 use super::report_parts::{convergence, failures_label, formats, provenance_rows, size_notes};
 use super::result::Finding;
 use super::run::{Ready, RunError, RunOptions};
-use super::settings::{Optimise, Question, Study};
+use super::settings::{Estimator, Optimise, Question, Study};
+use super::surrogate_search::{SurrogateTrace, search_through};
 use crate::optimiser::CoordinateAscentSettings;
 use crate::report::{self, Report, WorkspaceFigure, write_report};
 use crate::workspace::{ArtificialLimits, WorkspaceMap, WorkspaceSizes};
@@ -27,6 +28,7 @@ pub(super) fn run(study: &Study, options: &RunOptions, ready: Ready) -> Result<V
     let arm = PlanarStudy::new(study)?;
     ready.begin(options)?;
     let session = ready.session;
+    let mut surrogate = None;
     let (arm, limits, joint_limits, optimum, radii) = match &study.question {
         Question::Estimate(estimate) => {
             let given = estimate.limits.to_limits(&study.design.robot);
@@ -35,14 +37,15 @@ pub(super) fn run(study: &Study, options: &RunOptions, ready: Ready) -> Result<V
         }
         Question::Optimise(optimise) => {
             let saved = ready.saved;
-            let optimum = find(study, optimise, &arm, saved, &session)?;
+            let (optimum, trace) = find(study, optimise, &arm, saved, &session)?;
+            surrogate = trace;
             let arm = arm.with_lengths(optimum.design.lengths.clone());
             let limits = optimum.design.limits.clone();
             let joint_limits = arm.to_joints(&limits);
             (arm, limits, joint_limits, Some(optimum), Vec::new())
         }
-        Question::Manifolds(_) => {
-            return Err(anyhow::anyhow!("manifolds are not for the exact estimator").into());
+        Question::Manifolds(_) | Question::Train(_) | Question::Validate(_) => {
+            return Err(anyhow::anyhow!("this kind of study measures no workspace").into());
         }
     };
     let outcome = Outcome {
@@ -51,6 +54,7 @@ pub(super) fn run(study: &Study, options: &RunOptions, ready: Ready) -> Result<V
         limits,
         joint_limits,
         optimum,
+        surrogate,
         radii,
         study_toml: ready.study_toml,
         searched: session.store.seconds(),
@@ -66,23 +70,30 @@ fn find(
     arm: &PlanarStudy,
     saved: Option<super::checkpoint::Stage>,
     session: &Session,
-) -> Result<Optimum, RunError> {
+) -> Result<(Optimum, Option<SurrogateTrace>), RunError> {
     let space = arm.design_space(optimise);
     let objective = arm.objective(space.clone(), optimise.search.links.is_some());
     let start = optimise.start.as_ref();
     let limits = start.map(|start| arm.to_links(&start.to_limits(&study.design.robot)));
     let pose = arm.is_pose();
+    let start = limits.map(|limits| space.point(&limits));
     let terms = Terms {
         space: &space,
         objective: &objective,
-        start: limits.map(|limits| space.point(&limits)),
+        start,
         samples: None,
         coarse: Vec::new(),
         short_step: CoordinateAscentSettings::default().short_step,
         max_sweeps: if pose { POSE_SWEEPS } else { usize::MAX },
         tolerance: if pose { POSE_TOLERANCE } else { 0.0 },
+        truth: None,
     };
-    search(optimise, &terms, study.seed, saved, session)
+    if let Estimator::Surrogate { surrogate } = &study.estimator {
+        let found = search_through(study, optimise, surrogate, &terms, saved, session)?;
+        return Ok((found.0, Some(found.1)));
+    }
+    let optimum = search(optimise, &terms, study.seed, saved, session)?;
+    Ok((optimum, None))
 }
 
 /// A study whose search, if any, is over.
@@ -94,6 +105,7 @@ struct Outcome<'a> {
     /// The same limits of the joint variables, as tables have them.
     joint_limits: ArtificialLimits,
     optimum: Option<Optimum>,
+    surrogate: Option<SurrogateTrace>,
     radii: Vec<f64>,
     study_toml: String,
     searched: f64,
@@ -121,13 +133,15 @@ impl Outcome<'_> {
             figures.then(|| picture::sensitivity(&self.arm, &self.limits, unit, mark));
         tell(3, "writing the report");
         let found = self.optimum.is_some();
-        let notes = size_notes(&sizes, &self.joint_limits, &self.study.design.robot, found);
+        let mut notes = size_notes(&sizes, &self.joint_limits, &self.study.design.robot, found);
+        notes.extend(self.surrogate.iter().flat_map(SurrogateTrace::notes));
         let finding = Finding {
             study: self.study,
             arm: &self.arm,
             limits: &self.limits,
             sizes: &sizes,
             optimum: self.optimum.as_ref(),
+            surrogate: self.surrogate.as_ref(),
             radii: &self.radii,
             seconds: json!({
                 "total": session.store.seconds(),

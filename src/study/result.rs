@@ -3,6 +3,7 @@
 use super::optimise::Optimum;
 use super::planar_arm::{AtRadius, PlanarStudy};
 use super::settings::{DegreeLimits, Optimise, Question, Study};
+use super::surrogate_search::SurrogateTrace;
 use crate::angle::degree_pairs;
 use crate::workspace::{ArtificialLimits, Estimate, FailureSet, WorkspaceSizes};
 use serde_json::{Value, json};
@@ -18,6 +19,8 @@ pub(super) struct Finding<'a> {
     pub limits: &'a ArtificialLimits,
     pub sizes: &'a WorkspaceSizes,
     pub optimum: Option<&'a Optimum>,
+    /// How a search through a surrogate went.
+    pub surrogate: Option<&'a SurrogateTrace>,
     pub radii: &'a [f64],
     pub seconds: Value,
     pub threads: usize,
@@ -45,6 +48,9 @@ impl Finding<'_> {
         });
         if let (Some(optimum), Question::Optimise(optimise)) = (self.optimum, &study.question) {
             result["search"] = search(optimum, optimise);
+        }
+        if let Some(trace) = self.surrogate {
+            result["surrogate"] = trace.to_json();
         }
         if !self.radii.is_empty() {
             result["rotation_sets"] = self.rotation_sets();

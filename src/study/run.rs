@@ -3,7 +3,7 @@
 use super::checkpoint::{Stage, Store};
 use super::optimise::Session;
 use super::settings::{Estimator, Question, Study};
-use super::{check_folder, hybrid_run, manifold_run, planar_run};
+use super::{check_folder, hybrid_run, manifold_run, planar_run, train_run, validate_run};
 use crate::diagnostic::{InputError, Problem};
 use crate::report;
 use serde_json::Value;
@@ -99,7 +99,11 @@ fn run_in_pool(
     };
     match (&study.question, &study.estimator) {
         (Question::Manifolds(manifolds), _) => manifold_run::run(study, manifolds, options, ready),
-        (_, Estimator::Exact { .. }) => planar_run::run(study, options, ready),
+        (Question::Train(train), _) => train_run::run(study, train, options, ready),
+        (Question::Validate(validate), _) => validate_run::run(study, validate, options, ready),
+        (_, Estimator::Exact { .. } | Estimator::Surrogate { .. }) => {
+            planar_run::run(study, options, ready)
+        }
         (_, Estimator::Hybrid { hybrid }) => hybrid_run::run(study, hybrid, options, ready),
     }
 }

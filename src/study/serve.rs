@@ -31,6 +31,7 @@ pub(super) fn choose(file: &StudyFile, problems: &Problems, robot: &Robot) -> Es
         Some(item) => item.value,
         // Whoever writes the table means it.
         None if file.estimator.hybrid.is_some() => EstimatorMethod::Hybrid,
+        None if file.estimator.surrogate.is_some() => EstimatorMethod::Surrogate,
         None if exact.is_none() => EstimatorMethod::Exact,
         None => EstimatorMethod::Hybrid,
     };
@@ -39,7 +40,7 @@ pub(super) fn choose(file: &StudyFile, problems: &Problems, robot: &Robot) -> Es
         return method;
     }
     let refusal = match method {
-        EstimatorMethod::Exact => exact,
+        EstimatorMethod::Exact | EstimatorMethod::Surrogate => exact,
         EstimatorMethod::Hybrid => {
             refuse_exact_only(file, problems);
             hybrid_refusal(file, robot)
@@ -62,6 +63,17 @@ pub(super) fn check_manifolds(file: &StudyFile, problems: &Problems, robot: &Rob
         .as_ref()
         .and_then(|_| physical_refusal(file, robot));
     if let Some(Refusal { place, problem }) = manifold_refusal(file, robot, CURVES).or(limited) {
+        problems.report(place, problem);
+    }
+}
+
+/// Reports why surrogates cannot stand for this robot and task: they learn exact workspaces.
+pub(super) fn check_surrogate(file: &StudyFile, problems: &Problems, robot: &Robot) {
+    if robot.degree_of_redundancy(file.space.value) < 1 {
+        report_no_redundancy(file, problems, robot);
+    } else if let Some(Refusal { place, mut problem }) = exact_refusal(file, robot) {
+        problem.message = "surrogates learn from exact workspaces, which this has not".into();
+        problem.help = "choose a planar robot and task".into();
         problems.report(place, problem);
     }
 }

@@ -4,6 +4,7 @@
 //! that the study as run reads like the study as written; [`DegreeLimits::to_limits`] converts.
 
 use super::hybrid_settings::Hybrid;
+use super::surrogate_settings::{SurrogateEstimator, Train, Validate};
 use crate::design::{JointKind, Robot, TaskSpace};
 use crate::kinematics::{JointScale, joint_scales};
 use crate::manifold::SearchSettings;
@@ -11,6 +12,9 @@ use crate::optimiser::{CoordinateAscentSettings, GeneticSettings};
 use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use serde::Serialize;
 use std::path::PathBuf;
+
+/// Relative error target of quadrature where a study names none.
+pub(super) const EXACT_TOLERANCE: f64 = 1e-3;
 
 /// One question about one robot.
 #[derive(Clone, Debug, PartialEq)]
@@ -56,6 +60,10 @@ pub enum Question {
     Optimise(Optimise),
     /// With which configurations does the robot hold this pose?
     Manifolds(Manifolds),
+    /// What does a network learn of the workspace?
+    Train(Train),
+    /// How far are surrogates from the exact workspace?
+    Validate(Validate),
 }
 
 /// Settings of `kind = "estimate"`.
@@ -206,6 +214,12 @@ pub enum Estimator {
         /// How points are sampled and pre-images traced.
         hybrid: Hybrid,
     },
+    /// A trained surrogate for the search, the exact estimator for its result.
+    #[serde(skip)]
+    Surrogate {
+        /// The surrogate and what follows the search.
+        surrogate: SurrogateEstimator,
+    },
 }
 
 /// The estimators of this version.
@@ -215,6 +229,8 @@ pub enum EstimatorMethod {
     Exact,
     /// `hybrid`.
     Hybrid,
+    /// `surrogate`.
+    Surrogate,
 }
 
 /// What the report contains.
@@ -243,6 +259,8 @@ impl Question {
             Question::Estimate(_) => "estimate",
             Question::Optimise(_) => "optimise",
             Question::Manifolds(_) => "manifolds",
+            Question::Train(_) => "train",
+            Question::Validate(_) => "validate",
         }
     }
 }
@@ -344,7 +362,9 @@ impl Default for Genetic {
 
 impl Default for Estimator {
     fn default() -> Estimator {
-        Estimator::Exact { tolerance: 1e-3 }
+        Estimator::Exact {
+            tolerance: EXACT_TOLERANCE,
+        }
     }
 }
 

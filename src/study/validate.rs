@@ -6,6 +6,7 @@ use super::settings::{
     Design, Estimate, Estimator, EstimatorMethod, FigureFormat, Manifolds, Optimise,
     OptimiserSettings, Question, ReportSettings, Study,
 };
+use super::surrogate_check::Subject;
 use super::{hybrid_table, limits, pose_table, serve};
 use crate::diagnostic::{Item, Place, Problem, Problems};
 use crate::workspace::FailureSet;
@@ -20,14 +21,21 @@ pub(super) fn study(
     problems: &Problems,
     design: Design,
 ) -> Option<Study> {
+    let failures = failures(file, problems, design.robot.joints());
+    let subject = Subject {
+        file,
+        problems,
+        design: &design,
+        failures: &failures,
+    };
     let (question, estimator) = match file.kind.value {
         Kind::Estimate => {
-            let estimator = estimator(file, problems, &design);
+            let estimator = estimator(&subject);
             let question = estimate(file, problems, &design).map(Question::Estimate);
             (question, estimator)
         }
         Kind::Optimise => {
-            let estimator = estimator(file, problems, &design);
+            let estimator = estimator(&subject);
             let costly = matches!(estimator, Estimator::Hybrid { .. });
             let question = optimise(file, problems, &design, costly).map(Question::Optimise);
             (question, estimator)
@@ -36,8 +44,16 @@ pub(super) fn study(
             let question = manifolds(file, problems, &design).map(Question::Manifolds);
             (question, Estimator::default())
         }
+        Kind::Train => {
+            refuse_tables(file, problems, "train");
+            (subject.train().map(Question::Train), Estimator::default())
+        }
+        Kind::Validate => {
+            refuse_tables(file, problems, "validate");
+            let question = subject.validate().map(Question::Validate);
+            (question, Estimator::default())
+        }
     };
-    let failures = failures(file, problems, design.robot.joints());
     Some(Study {
         name: name.to_owned(),
         title: file.title.clone(),
@@ -51,8 +67,24 @@ pub(super) fn study(
     })
 }
 
-fn estimator(file: &StudyFile, problems: &Problems, design: &Design) -> Estimator {
+fn estimator(subject: &Subject) -> Estimator {
+    let Subject {
+        file,
+        problems,
+        design,
+        ..
+    } = subject;
     match serve::choose(file, problems, &design.robot) {
+        EstimatorMethod::Surrogate => {
+            if file.kind.value == Kind::Estimate {
+                refuse_predicted_estimate(file, problems);
+            }
+            let links = limits::search(file, problems, &design.robot).links;
+            match subject.estimator(links.as_ref()) {
+                Some(surrogate) => Estimator::Surrogate { surrogate },
+                None => Estimator::default(),
+            }
+        }
         EstimatorMethod::Exact => match file.estimator.tolerance {
             Some(tolerance) => Estimator::Exact { tolerance },
             None => Estimator::default(),
@@ -63,6 +95,19 @@ fn estimator(file: &StudyFile, problems: &Problems, design: &Design) -> Estimato
                 hybrid: hybrid_table::settings(table, file.space.value, problems),
             }
         }
+    }
+}
+
+/// A size that is reported is computed, never predicted.
+fn refuse_predicted_estimate(file: &StudyFile, problems: &Problems) {
+    let place = file.estimator.method.as_ref().map(|item| &item.place);
+    if let Some(place) = place.or(file.estimator.place.as_ref()) {
+        problems.reject(
+            place,
+            "a surrogate scores searches; it measures nothing",
+            "\"exact\" or \"hybrid\"",
+            "use `method = \"exact\"`; `kind = \"validate\"` shows what a surrogate predicts",
+        );
     }
 }
 
@@ -131,14 +176,21 @@ fn refuse_tables(file: &StudyFile, problems: &Problems, kind: &str) {
     fn place<T>(item: &Option<Item<T>>) -> Option<&Place> {
         item.as_ref().map(|item| &item.place)
     }
+    let limits = file.limits.as_ref().map(|limits| Place {
+        key: "limits".into(),
+        span: limits.lower_deg.place.span.clone(),
+    });
     let measured: &[&str] = &["estimate", "optimise"];
-    let tables: [(Option<&Place>, &[&str]); 6] = [
+    let tables: [(Option<&Place>, &[&str]); 9] = [
         (file.estimator.place.as_ref(), measured),
         (place(&file.estimate), &["estimate"]),
         (place(&file.search), &["optimise"]),
         (place(&file.optimiser), &["optimise"]),
         (place(&file.pose), &["manifolds"]),
         (place(&file.manifolds), &["manifolds"]),
+        (file.train_place.as_ref(), &["train"]),
+        (place(&file.validate), &["validate"]),
+        (limits.as_ref(), &["estimate", "optimise", "manifolds"]),
     ];
     for (place, kinds) in tables {
         if let Some(place) = place.filter(|_| !kinds.contains(&kind)) {

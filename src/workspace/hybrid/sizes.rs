@@ -136,12 +136,20 @@ impl Atlas {
 }
 
 /// Independent replicates: the scatter of their estimates.
+///
+/// From R replicates that scatter is itself known to a factor only. As JCGM 101:2008 §6.4.9
+/// asks for, the standard error is that of the t distribution, √((R − 1)/(R − 3)) times larger,
+/// where it exists.
 fn replicate_variance(replicates: &[[f64; 2]], value: f64) -> f64 {
     let count = replicates.len() as f64;
+    let widened = match replicates.len() {
+        0..=3 => 1.0,
+        _ => (count - 1.0) / (count - 3.0),
+    };
     let mean = value / count;
     let square: f64 = replicates.iter().map(|sum| (sum[0] - mean).powi(2)).sum();
     // Var(Σ T) of R independent parts T: R times their sample variance.
-    square * count / (count - 1.0).max(1.0)
+    widened * square * count / (count - 1.0).max(1.0)
 }
 
 /// Independent samples in every cell.

@@ -2,6 +2,7 @@
 
 mod chain;
 mod circle;
+mod locked_joints;
 mod maps;
 mod orientation;
 mod pose;
@@ -15,6 +16,7 @@ mod sweep;
 mod wrist;
 mod wrist_slice;
 
+pub use locked_joints::LockedJoints;
 pub use pose::PlanarPose;
 pub use position::{PlanarArm, PlanarPosition};
 pub use resolution::{Kronrod, PoseResolution};

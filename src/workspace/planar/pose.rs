@@ -130,6 +130,36 @@ impl PlanarPose {
         self.measure(&wrist, parts, r)
     }
 
+    /// W₀ at wrist radius `r`: for each of `bearings` β the directions γ that the arm reaches
+    /// inside its limits.
+    pub fn pre_failure_directions(
+        &mut self,
+        arm: PlanarArm<'_>,
+        r: f64,
+        bearings: &[f64],
+    ) -> Vec<AngleSet> {
+        let wrist = Wrist::new(arm);
+        let reach = annulus(&wrist.lengths);
+        let parts = Parts {
+            pre_failure: true,
+            joint_1: None,
+            joint_n: None,
+            radii: reach,
+        };
+        self.prepare(&wrist, parts);
+        let beta = self.outer_sets(parts, r).0;
+        if beta.is_empty() {
+            return vec![AngleSet::empty(); bearings.len()];
+        }
+        self.refresh_table(&wrist, r);
+        let directions = self.directions(&wrist, parts, r);
+        let at = |&angle: &f64| match beta.contains(angle) {
+            true => directions.at(angle),
+            false => AngleSet::empty(),
+        };
+        bearings.iter().map(at).collect()
+    }
+
     /// For each wrist radius and each of `bearings` cells around the circle from −π, the
     /// fault-tolerant set of γ at the cell's middle.
     pub fn direction_table(

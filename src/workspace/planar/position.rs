@@ -135,6 +135,18 @@ impl PlanarPosition {
         radii.iter().map(set).collect()
     }
 
+    /// W₀(r): what the arm reaches inside its limits at several radii, as polar angles.
+    pub fn pre_failure_sets(&mut self, arm: PlanarArm<'_>, radii: &[f64]) -> Vec<AngleSet> {
+        let reach = annulus(arm.lengths);
+        let parts = Parts {
+            pre_failure: true,
+            joint_1: None,
+            radii: reach,
+        };
+        self.pre_failure.rebuild(arm.lengths, arm.limits, reach);
+        radii.iter().map(|&r| self.set_at(parts, r)).collect()
+    }
+
     /// Radii of W_F's panels: between two neighbours the rotation set keeps its number of arcs,
     /// whose ends move smoothly.
     pub fn critical_radii(&mut self, arm: PlanarArm<'_>) -> Vec<f64> {

@@ -122,6 +122,18 @@ impl LockedJoint1 {
         }
     }
 
+    /// Φ(r) as half-angles [hole, out], radians in [0, π]: the bearings φ with hole ≤ |φ| ≤ out.
+    /// Empty if hole ≥ out.
+    pub fn half_angles(&self, r: f64) -> [f64; 2] {
+        let inside = |circle: &Circle| match () {
+            () if circle.crosses(r) => circle.half_angle(r),
+            // Not crossing, the circle |z| = r lies inside this one whole or not at all.
+            () if r < circle.radius - circle.distance => PI,
+            () => 0.0,
+        };
+        [inside(&self.inner), inside(&self.outer)]
+    }
+
     /// W₁(r): { β : β − A₁ ⊂ Φ(r) }.
     pub fn rotation_set(&self, r: f64) -> AngleSet {
         self.bearings(r).erosion(&self.limit.arc().mirrored())
