@@ -228,7 +228,7 @@ impl SizeScatter {
             &panel,
             &layout.ticks,
             &layout.ticks,
-            place % layout.columns == 0,
+            place.is_multiple_of(layout.columns),
         );
         let kinds = self.kinds();
         for series in self.series.iter().filter(|series| series.label == label) {
