@@ -30,7 +30,7 @@ const HEIGHT: f64 = 125.0;
 /// Height of the legend above the titles of the plots, points.
 const HEAD: f64 = LEGEND_ROW + MARGIN + PANEL_TITLE;
 /// Space between the plots, points.
-const GAP: f64 = 10.0;
+const GAP: f64 = 18.0;
 /// Radius of a dot, points.
 const DOT: f64 = 0.45;
 
