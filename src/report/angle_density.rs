@@ -25,7 +25,8 @@ pub struct AngleDensity {
     pub density: Vec<f64>,
     /// Radii in metres with the exact rotation sets: their edges are drawn.
     pub exact: Vec<(f64, AngleSet)>,
-    /// Radii between which fault-tolerant points may lie, metres.
+    /// Radii between which fault-tolerant points may lie, metres; not drawn unless the first is
+    /// the smaller one.
     pub gate: [f64; 2],
     /// Title above the plot; none if empty.
     pub title: String,
@@ -74,7 +75,9 @@ impl Figure for AngleDensity {
         self.draw_legend(canvas);
         self.draw_cells(canvas, &panel);
         angle_axes::draw_edges(canvas, &panel, &self.exact);
-        angle_axes::draw_gate(canvas, &panel, self.gate);
+        if self.has_gate() {
+            angle_axes::draw_gate(canvas, &panel, self.gate);
+        }
         if self.most() <= 0.0 {
             panel.remark(canvas, "no density anywhere");
         }
@@ -123,6 +126,11 @@ impl AngleDensity {
         title + LEGEND_ROW + MARGIN + 2.0
     }
 
+    fn has_gate(&self) -> bool {
+        let [low, high] = self.gate;
+        low.is_finite() && high.is_finite() && low < high
+    }
+
     /// The greatest density, at least 0.
     fn most(&self) -> f64 {
         let finite = self.density.iter().filter(|density| density.is_finite());
@@ -147,7 +155,7 @@ impl AngleDensity {
         if angle_axes::is_any(&self.exact) {
             entries.push((Swatch::Line(EDGE), "exact edge"));
         }
-        if self.gate.iter().all(|radius| radius.is_finite()) {
+        if self.has_gate() {
             entries.push((Swatch::Dashed(INK), "reachable gate"));
         }
         if self.density.iter().any(|density| !density.is_finite()) {

@@ -4,7 +4,7 @@ use super::angle_axes::{self, EDGE, SIDE};
 use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
-use super::panel::{BOTTOM, Panel};
+use super::panel::{BOTTOM, Panel, range};
 use super::point_cloud;
 use super::spatial_figure::{PANEL_TITLE, panel_title};
 use super::style::{BLUE, COLUMN, MARGIN, SMALL};
@@ -30,7 +30,7 @@ const HEIGHT: f64 = 125.0;
 /// Height of the legend above the titles of the plots, points.
 const HEAD: f64 = LEGEND_ROW + MARGIN + PANEL_TITLE;
 /// Space between the plots, points.
-const GAP: f64 = 10.0;
+const GAP: f64 = 18.0;
 /// Radius of a dot, points.
 const DOT: f64 = 0.45;
 
@@ -64,11 +64,12 @@ impl Figure for FilterFigure {
         self.draw_legend(canvas);
         let width = 0.5 * (COLUMN - SIDE - GAP - 2.0 * MARGIN);
         let drawn = self.before.iter().chain(&self.after).map(|point| point[0]);
-        let radii: Vec<f64> = drawn.chain(self.exact.iter().map(|(r, _)| *r)).collect();
+        let radii = drawn.chain(self.exact.iter().map(|(r, _)| *r));
+        let radii = range(radii, 0.01).map(|r| r.max(0.0));
         let panels = [("(a) before", &self.before), ("(b) after", &self.after)];
         for (k, (name, points)) in panels.into_iter().enumerate() {
             let left = SIDE + k as f64 * (width + GAP);
-            let radii = radii.iter().copied();
+            let radii = radii.into_iter();
             let panel = angle_axes::panel([left, HEAD], [width, HEIGHT], radii);
             let place = |p: &[f64; 2]| [p[0], wrap(p[1]).to_degrees()];
             let finite = points.iter().filter(|p| p.iter().all(|c| c.is_finite()));

@@ -81,7 +81,7 @@ mod tests {
         assert!(faces.iter().all(|face| face.families[0].0 == "DejaVu Sans"));
         let missing = text_width("\u{4e00}", false);
         for is_bold in [false, true] {
-            for character in "aZ09θ₀₁₉ₘₐₓ°±−–…×²³⁰⁻⁹∩≥é§".chars()
+            for character in "aZ09θβαγεκσ₀₁₉ₘₐₓ°±−–…×²³⁰⁻⁹∩≥é§".chars()
             {
                 let width = text_width(&character.to_string(), is_bold);
                 assert!(width > 0.2 && width != missing, "{character}: {width}");

@@ -40,7 +40,7 @@ const MOST: usize = 6;
 /// Space above a panel for its title, points.
 const TITLE_ROW: f64 = 13.0;
 /// Space between panels, points.
-const GAP: f64 = 10.0;
+const GAP: f64 = 18.0;
 /// The axes end at this multiple of the largest size.
 const BEYOND: f64 = 1.08;
 /// Markers closer than this are drawn once, points.
@@ -228,7 +228,7 @@ impl SizeScatter {
             &panel,
             &layout.ticks,
             &layout.ticks,
-            place % layout.columns == 0,
+            place.is_multiple_of(layout.columns),
         );
         let kinds = self.kinds();
         for series in self.series.iter().filter(|series| series.label == label) {
