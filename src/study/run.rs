@@ -64,7 +64,8 @@ pub fn run(
 
 /// As many threads as the options ask for.
 pub(super) fn pool(options: &RunOptions) -> Result<rayon::ThreadPool, RunError> {
-    let threads = options.threads.unwrap_or(0);
+    let cores = || std::thread::available_parallelism().map_or(1, |cores| cores.get());
+    let threads = options.threads.unwrap_or_else(cores);
     let pool = rayon::ThreadPoolBuilder::new()
         .num_threads(threads)
         .build()

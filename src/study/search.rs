@@ -25,6 +25,8 @@ pub(super) struct OptimiserTable {
     pub tournament: Option<Item<u64>>,
     /// Whether the file gives `restarts`: the default depends on what a score costs.
     pub restarts_given: bool,
+    /// Whether the file names the genetic algorithm's population.
+    pub population_given: bool,
 }
 
 /// The optimiser's `method`.
@@ -85,8 +87,10 @@ pub(super) fn read_optimiser(root: &Table) -> Option<Item<OptimiserTable>> {
         ],
     );
     let restarts = ascent.as_ref().and_then(|table| table.entry("restarts"));
+    let population = genetic.as_ref().and_then(|table| table.entry("population"));
     let optimiser = OptimiserTable {
         restarts_given: restarts.is_some(),
+        population_given: population.is_some(),
         method: method.map_or(Method::CoordinateAscent, |item| item.value),
         coordinate_ascent: ascent.as_ref().map(read_ascent).unwrap_or_default(),
         genetic: genetic.as_ref().map(read_genetic).unwrap_or_default(),

@@ -14,6 +14,9 @@ use crate::workspace::FailureSet;
 /// Random starts of a search whose score costs milliseconds, if the study names no number.
 const COSTLY_RESTARTS: u64 = 8;
 
+/// Candidates per generation of a search whose score costs microseconds, likewise.
+const CHEAP_POPULATION: u64 = 600;
+
 /// The validated study; reports to `problems` whatever is wrong.
 pub(super) fn study(
     name: &str,
@@ -36,8 +39,7 @@ pub(super) fn study(
         }
         Kind::Optimise => {
             let estimator = estimator(&subject);
-            let costly = matches!(estimator, Estimator::Hybrid { .. });
-            let question = optimise(file, problems, &design, costly).map(Question::Optimise);
+            let question = optimise(file, problems, &design, &estimator).map(Question::Optimise);
             (question, estimator)
         }
         Kind::Manifolds => {
@@ -128,7 +130,7 @@ fn optimise(
     file: &StudyFile,
     problems: &Problems,
     design: &Design,
-    costly: bool,
+    estimator: &Estimator,
 ) -> Option<Optimise> {
     refuse_tables(file, problems, "optimise");
     let table = file.limits.as_ref();
@@ -139,11 +141,18 @@ fn optimise(
     }
     let table = file.optimiser.as_ref().map(|item| &item.value);
     let mut optimiser = optimiser_settings(table, problems);
-    if let OptimiserSettings::CoordinateAscent(ascent) = &mut optimiser
-        && costly
-        && !table.is_some_and(|table| table.restarts_given)
-    {
-        ascent.restarts = COSTLY_RESTARTS;
+    match (&mut optimiser, estimator) {
+        (OptimiserSettings::CoordinateAscent(ascent), Estimator::Hybrid { .. })
+            if !table.is_some_and(|table| table.restarts_given) =>
+        {
+            ascent.restarts = COSTLY_RESTARTS;
+        }
+        (OptimiserSettings::Genetic(genetic), Estimator::Surrogate { .. })
+            if !table.is_some_and(|table| table.population_given) =>
+        {
+            genetic.population = CHEAP_POPULATION;
+        }
+        _ => {}
     }
     Some(Optimise {
         start,

@@ -197,7 +197,11 @@ fn density(judged: &Judged, shown: &Shown) -> Option<AngleDensity> {
         density: density.collect(),
         exact: exact_sets(arm, design, DENSITY_RADII),
         gate: locked.radii(),
-        title: format!("{}, {}", judged.name, limits_label(design)),
+        title: format!(
+            "{}: {}",
+            judged.name.replace('_', " "),
+            limits_label(design)
+        ),
     })
 }
 
@@ -230,10 +234,7 @@ fn filter(judged: &Judged, shown: &Shown) -> Option<FilterFigure> {
         before,
         after,
         exact,
-        filter_label: format!(
-            "α = {}, ε = {} rad, {} draws a radius",
-            filter.outlier, filter.closeness, filter.draws
-        ),
+        filter_label: format!("α = {}, ε = {:e}", filter.outlier, filter.closeness),
     })
 }
 

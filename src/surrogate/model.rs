@@ -6,6 +6,7 @@ use super::decode::Decoder;
 use super::features::Features;
 use super::mixture::Mixture;
 use super::network::{Layers, Network};
+use super::size::SizeHead;
 use super::surrogate_net::{Architecture, ClosedForms, Head};
 use crate::angle::AngleSet;
 use crate::objective::Design;
@@ -185,6 +186,21 @@ impl Model {
         self.cell_outputs(design, &self.arm.locked_joints(design), cells)
     }
 
+    /// Appends the sizes of as many designs as are computed at once.
+    fn add_sizes(&self, head: &SizeHead, designs: &[Design], sizes: &mut Vec<f64>) {
+        let count = self.features.count();
+        let mut inputs = vec![0.0; designs.len() * count];
+        let mut bounds = Vec::with_capacity(designs.len());
+        for (design, row) in designs.iter().zip(inputs.chunks_exact_mut(count)) {
+            let locked = self.arm.locked_joints(design);
+            self.features.write(design, &locked, None, false, row);
+            bounds.push(head.bound(&locked));
+        }
+        let outputs = self.outputs(&inputs);
+        let pairs = outputs.iter().zip(&bounds);
+        sizes.extend(pairs.map(|(&output, &bound)| head.size(output, bound)));
+    }
+
     fn size_from_sets(&self, design: &Design) -> f64 {
         let locked = self.arm.locked_joints(design);
         let rule = self.quadrature(&locked);
@@ -207,19 +223,11 @@ impl Surrogate for Model {
         let Head::Size(head) = &self.architecture.head else {
             return designs.iter().map(|d| self.size_from_sets(d)).collect();
         };
-        let count = self.features.count();
-        let mut inputs = vec![0.0; designs.len() * count];
-        let mut bounds = Vec::with_capacity(designs.len());
-        for (design, row) in designs.iter().zip(inputs.chunks_exact_mut(count)) {
-            let locked = self.arm.locked_joints(design);
-            self.features.write(design, &locked, None, false, row);
-            bounds.push(head.bound(&locked));
+        let mut sizes = Vec::with_capacity(designs.len());
+        for together in designs.chunks(self.network.rows_at_once()) {
+            self.add_sizes(head, together, &mut sizes);
         }
-        let outputs = self.outputs(&inputs);
-        let pairs = outputs.iter().zip(&bounds);
-        pairs
-            .map(|(&output, &bound)| head.size(output, bound))
-            .collect()
+        sizes
     }
 }
 

@@ -18,6 +18,10 @@ const LEAK: f32 = 0.01;
 /// spin-waiting pool of its own, which costs more than it gains.
 const MOST_ENTRIES: usize = 65_535;
 
+/// Rows × widest layer of a forward pass: larger results would be mapped and unmapped by the
+/// allocator each time, which takes longer than the products.
+const FORWARD_ENTRIES: usize = 12_000;
+
 /// A network: sizes of all layers, inputs first, and its weights.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Network {
@@ -80,10 +84,18 @@ impl Network {
         self.sizes[self.sizes.len() - 1]
     }
 
-    /// Rows that are computed at once: as many as stay in the fast path and in the caches.
+    /// Rows of a forward pass.
     pub fn rows_at_once(&self) -> usize {
-        let widest = self.sizes.iter().copied().max().unwrap_or(1);
-        (MOST_ENTRIES / widest).clamp(1, 512)
+        (FORWARD_ENTRIES / self.widest()).clamp(1, 512)
+    }
+
+    /// Most rows of a chunk that is learnt from.
+    pub(super) fn rows_of_chunk(&self) -> usize {
+        (MOST_ENTRIES / self.widest()).clamp(1, 512)
+    }
+
+    fn widest(&self) -> usize {
+        self.sizes.iter().copied().max().unwrap_or(1)
     }
 
     /// The layers as tensors, for many forward passes.
@@ -171,8 +183,10 @@ impl Layers {
     fn forward(&self, x: &Tensor) -> Result<Tensor> {
         let last = self.layers.len() - 1;
         let mut x = x.clone();
+        // The bias as a product: candle's derivative of a broadcast sum costs more than all else.
+        let ones = Tensor::ones((x.dim(0)?, 1), DType::F32, &Device::Cpu)?;
         for (k, [matrix, bias]) in self.layers.iter().enumerate() {
-            x = x.matmul(matrix)?.broadcast_add(bias)?;
+            x = (x.matmul(matrix)? + ones.matmul(bias)?)?;
             if k < last {
                 x = x.apply_op1(LeakyRelu)?;
             }

@@ -235,7 +235,7 @@ fn batch_gradient(
     first: u64,
 ) -> Result<(f64, Vec<f32>), TrainingError> {
     let layers = network.variables()?;
-    let chunks = batch.len().div_ceil(network.rows_at_once());
+    let chunks = batch.len().div_ceil(network.rows_of_chunk());
     let rows = batch.len().div_ceil(chunks.next_multiple_of(CHUNKS)).max(1);
     let work = |(k, chunk): (usize, &[u32])| {
         let examples: Vec<Example> = chunk.iter().map(|&i| lesson.examples[i as usize]).collect();
@@ -283,7 +283,7 @@ fn chunk_gradient(
 /// Mean loss on kept-back data, always with the same draws.
 fn judge(lesson: &Lesson, network: &Network) -> Result<f64, TrainingError> {
     let layers = network.layers()?;
-    let rows = network.rows_at_once();
+    let rows = network.rows_of_chunk();
     let work = |(k, examples): (usize, &[Example])| {
         let mut generator = stream(lesson.settings.seed, JUDGE_STREAM + 1 + k as u64);
         let prepared = lesson.architecture.prepare(

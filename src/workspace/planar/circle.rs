@@ -50,6 +50,16 @@ impl Circle {
         }
     }
 
+    /// A circle whose centre lies on the x axis, at a positive distance.
+    pub fn on_axis(distance: f64, radius: f64) -> Circle {
+        Circle {
+            centre: Complex::new(distance, 0.0),
+            distance,
+            bearing: 0.0,
+            radius,
+        }
+    }
+
     /// The same circle turned about joint 1.
     pub fn rotated(&self, angle: f64) -> Circle {
         let bearing = self.bearing + angle;

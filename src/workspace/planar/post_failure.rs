@@ -7,7 +7,6 @@
 use super::circle::{Circle, Side};
 use crate::angle::{AngleSet, Arc};
 use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
-use nalgebra::Complex;
 use std::f64::consts::{PI, TAU};
 
 /// Radii [inner, outer] that a chain of free links reaches.
@@ -83,10 +82,9 @@ pub(super) struct LockedJoint1 {
 impl LockedJoint1 {
     pub fn new(lengths: &[f64], limit: JointLimit) -> LockedJoint1 {
         let [d_min, d_max] = annulus(&lengths[1..]);
-        let joint_2 = Complex::new(lengths[0], 0.0);
         LockedJoint1 {
-            outer: Circle::new(joint_2, d_max),
-            inner: Circle::new(joint_2, d_min),
+            outer: Circle::on_axis(lengths[0], d_max),
+            inner: Circle::on_axis(lengths[0], d_min),
             limit,
         }
     }
