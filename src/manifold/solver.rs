@@ -143,6 +143,26 @@ impl<const N: usize, const M: usize> Solver<N, M> {
         }
     }
 
+    /// The curve through `theta`, which is first moved onto the pre-image; `None` if Newton steps
+    /// do not lead there, as next to singular configurations.
+    pub fn trace(
+        &self,
+        goal: &Goal<f64>,
+        theta: &[f64; N],
+        settings: &SearchSettings,
+    ) -> Option<Curve<N>> {
+        let (point, _) = correct(&self.kernel, goal, theta)?;
+        let mut curve = Curve::new();
+        trace(
+            &self.kernel,
+            goal,
+            &wrapped(&point),
+            &settings.trace,
+            &mut curve,
+        );
+        Some(curve)
+    }
+
     fn is_done(&self, settings: &SearchSettings) -> bool {
         if self.seeds >= settings.most_seeds {
             return true;
