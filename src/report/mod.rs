@@ -5,23 +5,29 @@
 //! puts on a PNG (1600 pixels wide for one column of a paper) or an SVG, and the table behind it as CSV. Files are written
 //! whole or not at all, and the same input gives the same bytes.
 //!
-//! [`write_report`] and, for studies of one pose, [`write_manifold_report`] write everything; [`write_figure`], [`write_json`] and [`write_text`] write
+//! [`write_report`] and, for studies of one pose or of singular configurations,
+//! [`write_manifold_report`] and [`write_finding_report`] write everything; [`write_figure`], [`write_json`] and [`write_text`] write
 //! single files.
 
 mod arm;
+mod arm_poses_figure;
 mod axonometry;
 mod canvas;
 mod convergence;
+mod distribution_figure;
 mod error;
 mod figure;
+mod finding_report;
 mod free_place;
 mod half_plane_figure;
 mod html;
 mod joint_bars;
 mod joint_mark;
+mod joint_ranges_figure;
 mod label;
 mod limits_figure;
 mod link_rod;
+mod locks_figure;
 mod manifold;
 mod manifold_figure;
 mod manifold_page;
@@ -30,9 +36,11 @@ mod manifold_view;
 mod number;
 mod outline;
 mod panel;
+mod pareto_figure;
 mod points;
 mod polar;
 mod projection;
+mod projections_figure;
 mod render;
 mod result_files;
 mod rings;
@@ -45,9 +53,11 @@ mod sections;
 mod sensitivity;
 mod share_scale;
 mod shares;
+mod singularity_figure;
 mod sizes_figure;
 mod slices;
 mod spatial_figure;
+mod split_figure;
 mod style;
 mod subscript;
 mod table;
@@ -57,27 +67,36 @@ mod ticks;
 mod workspace_figure;
 mod write;
 
+pub use arm_poses_figure::{ArmPose, ArmPosesFigure};
 pub use canvas::{Canvas, Size};
 pub use convergence::{Convergence, ConvergencePoint};
+pub use distribution_figure::{DistributionFigure, SizeSample};
 pub use error::ReportError;
 pub use figure::{Figure, Format, figure_png, figure_svg, write_figure};
+pub use finding_report::{FindingReport, Section, write_finding_report};
 pub use half_plane_figure::HalfPlaneFigure;
 pub use html::{InlineFigure, page};
+pub use joint_ranges_figure::JointRangesFigure;
 pub use limits_figure::LimitsFigure;
+pub use locks_figure::{GoalLocks, LockMark, LocksFigure};
 pub use manifold::{CriticalPoint, ManifoldCurve};
 pub use manifold_figure::ManifoldFigure;
 pub use manifold_report::{
     JointRow, ManifoldReport, ManifoldRow, PoseVerdict, write_manifold_report,
 };
 pub use manifold_view::ManifoldFigure3d;
-pub use number::{degrees, estimate, percentage, plain, unit, with_error};
+pub use number::{degrees, estimate, joint_symbol, percentage, plain, unit, with_error};
+pub use pareto_figure::{ParetoFigure, ParetoPoint};
 pub use points::{write_curves, write_points};
+pub use projections_figure::ProjectionsFigure;
 pub use result_files::{write_bytes, write_json, write_text};
 pub use robot_3d::{JointMark, SpatialRobotFigure};
 pub use robot_figure::RobotFigure;
 pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};
+pub use singularity_figure::{SingularPoint, SingularityFigure};
 pub use sizes_figure::SizesFigure;
 pub use spatial_figure::SpatialWorkspaceFigure;
+pub use split_figure::{SplitFigure, SplitPanel};
 pub use table::Table;
 pub use workspace_figure::WorkspaceFigure;
 pub use write::{Report, write_report};

@@ -11,6 +11,7 @@
 
 mod branches;
 mod catalogue;
+mod comparison;
 mod decomposition;
 mod descent;
 mod dexterity;
@@ -21,6 +22,7 @@ mod location;
 mod pareto;
 mod ranges;
 mod refine;
+mod split;
 mod stratum;
 mod surface;
 
@@ -28,6 +30,7 @@ pub use catalogue::{
     Catalogue, RankTally, SingularFamily, Singularity, SingularitySettings, find_singularities,
     random_configuration,
 };
+pub use comparison::{Comparison, compare};
 pub use descent::{Descent, DescentSettings, DescentStatus, descend};
 pub use dexterity::{Dexterity, measures};
 pub use failure::{FailureExperiment, FailureSettings, JointOutcome, Lock, REACHED};
@@ -36,5 +39,6 @@ pub use location::{ConnectedSet, Location, LocationSearch, Node};
 pub use pareto::front;
 pub use ranges::{joint_ranges, size};
 pub use refine::{RefineSettings, Refined, refine};
+pub use split::{Split, find_split};
 pub use stratum::{Arm, SINGULAR};
 pub use surface::SingularSurface;

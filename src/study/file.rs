@@ -7,6 +7,8 @@ use super::hybrid_table::{self, HybridTable};
 use super::pose_table::{self, ManifoldsTable, PoseTable};
 use super::search::{self, OptimiserTable, SearchTable};
 use super::settings::{EstimatorMethod, FigureFormat};
+use super::singular_settings::{LargestSearch, SingularitySearch};
+use super::singular_table::{self, FailureTable};
 use crate::design::TaskSpace;
 use crate::diagnostic::{Document, InputError, Item, Place, Source, Table, nearest};
 
@@ -24,18 +26,23 @@ const KEYS: &[&str] = &[
     "optimiser",
     "pose",
     "manifolds",
+    "singularities",
+    "largest-manifold",
+    "failure-experiment",
     "report",
 ];
 
-/// Kinds of studies that exist or are planned; the first three are served.
-const KINDS: [&str; 7] = [
-    "estimate",
-    "optimise",
-    "manifolds",
-    "train",
-    "validate",
-    "singularities",
-    "redundancy",
+/// Kinds of studies that exist, and planned ones.
+const KINDS: [(&str, Option<Kind>); 9] = [
+    ("estimate", Some(Kind::Estimate)),
+    ("optimise", Some(Kind::Optimise)),
+    ("manifolds", Some(Kind::Manifolds)),
+    ("singularities", Some(Kind::Singularities)),
+    ("largest-manifold", Some(Kind::LargestManifold)),
+    ("failure-experiment", Some(Kind::FailureExperiment)),
+    ("train", None),
+    ("validate", None),
+    ("redundancy", None),
 ];
 
 /// Largest angle in a file, degrees: ten turns. Beyond, the fraction of a turn loses its digits.
@@ -60,6 +67,9 @@ pub struct StudyFile {
     pub(super) optimiser: Option<Item<OptimiserTable>>,
     pub(super) pose: Option<Item<PoseTable>>,
     pub(super) manifolds: Option<Item<ManifoldsTable>>,
+    pub(super) singularities: Option<Item<SingularitySearch>>,
+    pub(super) largest: Option<Item<LargestSearch>>,
+    pub(super) failure: Option<Item<FailureTable>>,
     pub(super) formats: Option<Item<Vec<Item<FigureFormat>>>>,
     pub(super) figures: Option<bool>,
 }
@@ -70,6 +80,9 @@ pub(super) enum Kind {
     Estimate,
     Optimise,
     Manifolds,
+    Singularities,
+    LargestManifold,
+    FailureExperiment,
 }
 
 /// `failures = "any"` or a list of joint numbers from 1.
@@ -152,6 +165,9 @@ fn read(root: &Table) -> Option<StudyFile> {
         optimiser: search::read_optimiser(root),
         pose: pose_table::read_pose(root),
         manifolds: pose_table::read_manifolds(root),
+        singularities: singular_table::read_singularities(root),
+        largest: singular_table::read_largest(root),
+        failure: singular_table::read_failure(root),
         formats: report.as_ref().and_then(read_formats),
         figures: report
             .and_then(|table| table.boolean("figures"))
@@ -165,27 +181,27 @@ fn read(root: &Table) -> Option<StudyFile> {
 
 fn read_kind(root: &Table) -> Option<Item<Kind>> {
     let text = root.text("kind")?;
-    let kind = match text.value.as_str() {
-        "estimate" => Kind::Estimate,
-        "optimise" => Kind::Optimise,
-        "manifolds" => Kind::Manifolds,
-        other => {
-            let (message, help) = match nearest(other, &KINDS) {
-                Some(planned) if planned == other => (
-                    "this version does not serve this kind of study",
-                    "ask for an estimate, an optimisation or manifolds".to_owned(),
-                ),
-                Some(planned) => (
-                    "unknown kind of study",
-                    format!("did you mean \"{planned}\"?"),
-                ),
-                None => ("unknown kind of study", String::new()),
-            };
-            let expected = "\"estimate\", \"optimise\" or \"manifolds\"";
-            root.problems()
-                .reject(&text.place, message, expected, &help);
-            return None;
-        }
+    let written = text.value.as_str();
+    let known = KINDS.iter().find(|(name, _)| *name == written);
+    let Some(kind) = known.and_then(|(_, kind)| *kind) else {
+        let names = KINDS.map(|(name, _)| name);
+        let served = KINDS.iter().filter(|(_, kind)| kind.is_some());
+        let served: Vec<String> = served.map(|(name, _)| format!("\"{name}\"")).collect();
+        let expected = format!("one of {}", served.join(", "));
+        let (message, help) = match (known, nearest(written, &names)) {
+            (Some(_), _) => (
+                "this version does not serve this kind of study",
+                "ask for one of the kinds that are served".to_owned(),
+            ),
+            (None, Some(meant)) => (
+                "unknown kind of study",
+                format!("did you mean \"{meant}\"?"),
+            ),
+            (None, None) => ("unknown kind of study", String::new()),
+        };
+        root.problems()
+            .reject(&text.place, message, &expected, &help);
+        return None;
     };
     Some(Item {
         value: kind,

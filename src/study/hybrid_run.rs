@@ -58,9 +58,7 @@ pub(super) fn run(
             run.write(&atlas, &estimate.limits, &limits, None)
         }
         Question::Optimise(optimise) => run.optimise(optimise, atlas),
-        Question::Manifolds(_) => {
-            Err(anyhow::anyhow!("a study of manifolds measures no workspace").into())
-        }
+        _ => Err(anyhow::anyhow!("this kind of study measures no workspace").into()),
     }?;
     run.ready.session.store.remove();
     Ok(result)

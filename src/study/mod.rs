@@ -6,6 +6,7 @@
 
 mod as_run;
 mod checkpoint;
+mod failure_run;
 mod file;
 mod folder;
 mod hybrid_arm;
@@ -13,8 +14,11 @@ mod hybrid_result;
 mod hybrid_run;
 mod hybrid_settings;
 mod hybrid_table;
+mod largest_result;
+mod largest_run;
 mod limits;
 mod load;
+mod location_result;
 mod manifold_report;
 mod manifold_result;
 mod manifold_run;
@@ -30,6 +34,9 @@ mod search;
 mod serve;
 mod settings;
 mod shards;
+mod singular_settings;
+mod singular_table;
+mod singularity_run;
 mod spatial_picture;
 mod validate;
 
@@ -44,3 +51,6 @@ pub use settings::{
     ReportSettings, Search, Study,
 };
 pub use shards::{MergeReport, Part, ShardReport, build_part, merge};
+pub use singular_settings::{
+    Configuration, FailureStudy, LargestManifold, LargestSearch, NamedGoal, SingularitySearch,
+};

@@ -40,9 +40,7 @@ pub(super) fn run(study: &Study, options: &RunOptions, ready: Ready) -> Result<V
             let joint_limits = arm.to_joints(&limits);
             (arm, limits, joint_limits, Some(optimum), Vec::new())
         }
-        Question::Manifolds(_) => {
-            return Err(anyhow::anyhow!("manifolds are not for the exact estimator").into());
-        }
+        _ => return Err(anyhow::anyhow!("this kind of study measures no workspace").into()),
     };
     let outcome = Outcome {
         study,

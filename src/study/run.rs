@@ -3,7 +3,9 @@
 use super::checkpoint::{Stage, Store};
 use super::optimise::Session;
 use super::settings::{Estimator, Question, Study};
-use super::{check_folder, hybrid_run, manifold_run, planar_run};
+use super::{
+    check_folder, failure_run, hybrid_run, largest_run, manifold_run, planar_run, singularity_run,
+};
 use crate::diagnostic::{InputError, Problem};
 use crate::report;
 use serde_json::Value;
@@ -99,6 +101,11 @@ fn run_in_pool(
     };
     match (&study.question, &study.estimator) {
         (Question::Manifolds(manifolds), _) => manifold_run::run(study, manifolds, options, ready),
+        (Question::Singularities(search), _) => singularity_run::run(study, search, options, ready),
+        (Question::LargestManifold(largest), _) => largest_run::run(study, largest, options, ready),
+        (Question::FailureExperiment(failure), _) => {
+            failure_run::run(study, failure, options, ready)
+        }
         (_, Estimator::Exact { .. }) => planar_run::run(study, options, ready),
         (_, Estimator::Hybrid { hybrid }) => hybrid_run::run(study, hybrid, options, ready),
     }

@@ -4,6 +4,7 @@
 //! that the study as run reads like the study as written; [`DegreeLimits::to_limits`] converts.
 
 use super::hybrid_settings::Hybrid;
+use super::singular_settings::{FailureStudy, LargestManifold, SingularitySearch};
 use crate::design::{JointKind, Robot, TaskSpace};
 use crate::kinematics::{JointScale, joint_scales};
 use crate::manifold::SearchSettings;
@@ -56,6 +57,12 @@ pub enum Question {
     Optimise(Optimise),
     /// With which configurations does the robot hold this pose?
     Manifolds(Manifolds),
+    /// Where does the robot lose rank?
+    Singularities(SingularitySearch),
+    /// Where can it lose any joint, anywhere in its range, and hold the task?
+    LargestManifold(LargestManifold),
+    /// Does it reach these goals after a joint has locked on the way?
+    FailureExperiment(FailureStudy),
 }
 
 /// Settings of `kind = "estimate"`.
@@ -243,6 +250,9 @@ impl Question {
             Question::Estimate(_) => "estimate",
             Question::Optimise(_) => "optimise",
             Question::Manifolds(_) => "manifolds",
+            Question::Singularities(_) => "singularities",
+            Question::LargestManifold(_) => "largest-manifold",
+            Question::FailureExperiment(_) => "failure-experiment",
         }
     }
 }
