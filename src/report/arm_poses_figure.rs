@@ -21,6 +21,8 @@ pub struct ArmPose {
     pub name: String,
     /// Corners of the skeleton.
     pub corners: Vec<Vector3<f64>>,
+    /// Where its joints are, base first, metres: corners with none left out.
+    pub places: Vec<Vector3<f64>>,
     /// The tool's frame.
     pub tool: Isometry3<f64>,
 }
@@ -63,7 +65,7 @@ impl ArmPosesFigure {
             .fold(Vector3::repeat(f64::NEG_INFINITY), |a, p| a.sup(p));
         let size = (high - low).max().max(1e-6);
         for axis in 0..3 {
-            let missing = 0.5 * (0.5 * size - (high[axis] - low[axis])).max(0.0) + 0.06 * size;
+            let missing = 0.5 * (0.8 * size - (high[axis] - low[axis])).max(0.0) + 0.06 * size;
             low[axis] -= missing;
             high[axis] += missing;
         }

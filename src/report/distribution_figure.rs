@@ -31,7 +31,7 @@ pub struct DistributionFigure {
 
 const HEAD: f64 = 20.0;
 const HEIGHT: f64 = 150.0;
-const BINS: usize = 36;
+const BINS: usize = 28;
 
 /// The value below which a share of the sorted values lies.
 fn quantile(sorted: &[f64], share: f64) -> f64 {
@@ -62,10 +62,10 @@ impl DistributionFigure {
     ) {
         let mut sorted: Vec<f64> = sizes.iter().copied().filter(|s| s.is_finite()).collect();
         sorted.sort_by(f64::total_cmp);
-        let [low, high] = panel.y;
+        let [low, high] = [quantile(&sorted, 0.0), quantile(&sorted, 1.0)];
         let mut counts = vec![0.0; BINS];
         for size in &sorted {
-            let share = (size - low) / (high - low);
+            let share = (size - low) / (high - low).max(1e-9);
             counts[((share * BINS as f64) as usize).min(BINS - 1)] += 1.0;
         }
         // A light smoothing over neighbours.
@@ -75,7 +75,9 @@ impl DistributionFigure {
             .collect();
         let most = smooth.iter().copied().fold(1e-9, f64::max);
         let edge = |k: usize, side: f64| {
-            let y = low + (k as f64 + 0.5) / BINS as f64 * (high - low);
+            // The outer bins reach to the least and the greatest value.
+            let place = k as f64 / (BINS - 1) as f64;
+            let y = low + place * (high - low);
             [middle + side * half * smooth[k] / most, panel.at(0.0, y)[1]]
         };
         let shown: Vec<usize> = (0..BINS).filter(|&k| smooth[k] > 0.0).collect();

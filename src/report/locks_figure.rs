@@ -105,7 +105,7 @@ impl Figure for LocksFigure {
         for goal in &self.goals {
             Label::new(&goal.name, SMALL).bold().draw_within(
                 canvas,
-                [NAMES, y + 11.0],
+                [NAMES + 3.0, y + 11.0],
                 COLUMN - NAMES - MARGIN,
             );
             y += GROUP;

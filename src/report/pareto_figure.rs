@@ -4,7 +4,7 @@ use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
 use super::panel::{self, BOTTOM, Panel};
-use super::style::{BLUE, COLUMN, GREY, MARGIN, ORANGE, TITLE, VERMILLION, WHITE, translucent};
+use super::style::{BLUE, COLUMN, GREY, MARGIN, ORANGE, TITLE, VERMILLION, translucent};
 use super::table::{Table, cell};
 use super::ticks::{self, Tick};
 use plotters::style::RGBAColor;
@@ -113,8 +113,7 @@ impl Figure for ParetoFigure {
         let line: Vec<[f64; 2]> = front.iter().map(|p| at(p)).collect();
         canvas.stroke(&line, 0.9, VERMILLION);
         for point in front {
-            canvas.disc(at(point), 1.8, WHITE);
-            canvas.disc(at(point), 1.3, VERMILLION);
+            canvas.disc(at(point), 1.1, VERMILLION);
         }
         panel.axes(canvas, &x_ticks, &y_ticks, true);
         panel.x_label(canvas, "size (rad)");

@@ -1,7 +1,7 @@
 //! All self-motion manifolds of one location in the spaces of several triples of joints, coloured by
 //! a further joint [S1 Figs. 3–5].
 
-use super::axonometry::{Axis, AxisBox, Camera, Point3};
+use super::axonometry::{Axis, AxisBox, Camera};
 use super::canvas::{Canvas, Point, Size};
 use super::figure::Figure;
 use super::label::{Label, Swatch, legend, rectangle};
@@ -91,25 +91,30 @@ impl ProjectionsFigure<'_> {
         }
         let indices = [joints[0] - 1, joints[1] - 1, joints[2] - 1, self.colour - 1];
         let range = self.range();
-        let mut strokes: Vec<(f64, [Point; 2], RGBAColor)> = Vec::new();
+        let mut strokes: Vec<(f64, Vec<Point>, RGBAColor)> = Vec::new();
         for curve in self.curves {
             for piece in pieces(curve, self.joint_count, None) {
                 for line in wrapped(&piece.points, indices) {
-                    for pair in line.windows(2) {
-                        let ends =
-                            [0, 1].map(|k| -> Point3 { [pair[k][0], pair[k][1], pair[k][2]] });
-                        let floor = ends.map(|p| scene.at([p[0], p[1], -180.0]));
-                        canvas.stroke(&floor, 0.4, translucent(GREY, 0.35));
-                        let middle = std::array::from_fn(|c| 0.5 * (ends[0][c] + ends[1][c]));
-                        let colour = self.colour_of(0.5 * (pair[0][3] + pair[1][3]), range);
-                        strokes.push((scene.depth(middle), ends.map(|p| scene.at(p)), colour));
+                    let floor: Vec<Point> = line
+                        .iter()
+                        .map(|p| scene.at([p[0], p[1], -180.0]))
+                        .collect();
+                    canvas.stroke(&thinned(&floor), 0.4, translucent(GREY, 0.35));
+                    let seen: Vec<Point> =
+                        line.iter().map(|p| scene.at([p[0], p[1], p[2]])).collect();
+                    for pair in corners(&seen).windows(2) {
+                        let [from, to] = [line[pair[0]], line[pair[1]]];
+                        let middle = std::array::from_fn(|c| 0.5 * (from[c] + to[c]));
+                        let colour = self.colour_of(0.5 * (from[3] + to[3]), range);
+                        let path = seen[pair[0]..=pair[1]].to_vec();
+                        strokes.push((scene.depth(middle), path, colour));
                     }
                 }
             }
         }
         strokes.sort_by(|a, b| a.0.total_cmp(&b.0));
         for (_, ends, colour) in &strokes {
-            canvas.stroke(ends, WIDTH, *colour);
+            canvas.stroke(&thinned(ends), WIDTH, *colour);
         }
         for (theta, loss) in self
             .nodes
@@ -169,6 +174,38 @@ impl ProjectionsFigure<'_> {
             &entries,
         );
     }
+}
+
+/// Parts of a line of one colour are at least this long, points.
+const PART: f64 = 3.0;
+/// Vertices nearer to each other are drawn as one, points.
+const FINE: f64 = 0.25;
+
+/// Indices of a path's points at distances of at least [`PART`], and its last one.
+fn corners(path: &[Point]) -> Vec<usize> {
+    let mut kept = vec![0];
+    for (index, point) in path.iter().enumerate().skip(1) {
+        let last = path[kept[kept.len() - 1]];
+        let far = (point[0] - last[0]).hypot(point[1] - last[1]) > PART;
+        if far || index + 1 == path.len() {
+            kept.push(index);
+        }
+    }
+    kept
+}
+
+/// The path without points that nobody could tell apart.
+fn thinned(path: &[Point]) -> Vec<Point> {
+    let mut kept: Vec<Point> = Vec::new();
+    for (index, point) in path.iter().enumerate() {
+        let near = kept
+            .last()
+            .is_some_and(|last| (point[0] - last[0]).hypot(point[1] - last[1]) < FINE);
+        if !near || index + 1 == path.len() {
+            kept.push(*point);
+        }
+    }
+    kept
 }
 
 /// Colours round a full turn, its ends alike.

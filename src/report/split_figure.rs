@@ -38,7 +38,7 @@ pub struct SplitFigure {
     pub title: String,
 }
 
-const GAP: f64 = 14.0;
+const GAP: f64 = 24.0;
 const HEAD: f64 = 34.0;
 
 impl SplitFigure {

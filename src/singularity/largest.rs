@@ -6,11 +6,13 @@
 //! weighs size against dexterity [S1 Fig. 7d].
 
 use super::catalogue::{Catalogue, SingularitySettings, find_singularities, random_configuration};
-use super::dexterity::{Dexterity, STILL};
-use super::location::{Location, LocationSearch};
+use super::dexterity::{Dexterity, STILL, measures};
+use super::location::{Location, LocationSearch, STALLED};
 use super::pareto::front;
 use super::ranges::joint_ranges;
 use super::refine::{RefineSettings, Refined, refine};
+use super::surface::SingularSurface;
+use crate::manifold::{CurveStatus, SelfMotionManifold};
 use crate::sampling::stream;
 use rand::Rng;
 use rayon::prelude::*;
@@ -68,6 +70,9 @@ pub struct Candidate {
     pub origin: Origin,
     /// Sum of joint ranges over all manifolds, radians.
     pub size: f64,
+    /// Whether the manifolds were traced to their ends, so that nothing is missing in the size;
+    /// remains of starts that stalled next to nodes do not count.
+    pub is_whole: bool,
     /// The best local measures over its configurations.
     pub dexterity: Dexterity,
 }
@@ -208,20 +213,49 @@ pub(super) fn screen_one(
     let tool = search.arm().chain.tool(&theta);
     let (manifolds, size) = search.screen(&tool, false, &mut stream(seed, item));
     let physical = search.physical().to_vec();
-    let ranges = joint_ranges(&manifolds, &physical);
+    let mut ranges = joint_ranges(&manifolds, &physical);
+    let mut size = size;
+    let closed = |manifold: &SelfMotionManifold| {
+        matches!(manifold.status, CurveStatus::Closed | CurveStatus::Stroke)
+    };
+    let whole = |manifold: &SelfMotionManifold| closed(manifold) || manifold.length < STALLED;
+    let mut is_whole = manifolds.iter().any(closed) && manifolds.iter().all(whole);
+    if loss > 0
+        && !manifolds.iter().any(closed)
+        && let Some(surface) =
+            SingularSurface::through(&search.arm(), &tool, &theta, loss, &physical)
+    {
+        // Singular throughout: no curve could be traced to its end.
+        for (range, more) in ranges.iter_mut().zip(&surface.ranges) {
+            *range = range.union(more);
+        }
+        size = super::ranges::size(&ranges);
+        is_whole = true;
+    }
     let moves: Vec<bool> = ranges.iter().map(|range| range.measure() > STILL).collect();
     let inside = |theta: &[f64]| {
         let mut pairs = theta.iter().zip(&physical);
         pairs.all(|(&angle, arc)| arc.contains(angle))
     };
     let arm = search.arm();
-    let dexterity = Dexterity::of(&arm, &manifolds, &moves, SCREENED_VERTICES, inside)?;
+    let at_hand = || {
+        let [condition, manipulability, fault_tolerant] = measures(&arm, &theta, &moves);
+        inside(&theta).then(|| Dexterity {
+            condition,
+            theta: theta.clone(),
+            manipulability,
+            fault_tolerant,
+        })
+    };
+    let dexterity = Dexterity::of(&arm, &manifolds, &moves, SCREENED_VERTICES, inside);
+    let dexterity = dexterity.or_else(at_hand)?;
     Some(Candidate {
         theta,
         loss,
         start,
         origin,
         size,
+        is_whole,
         dexterity,
     })
 }
@@ -281,7 +315,7 @@ fn smallest(
 ) -> Option<(Location, Vec<f64>)> {
     let mut chosen: Vec<&Candidate> = Vec::new();
     for group in [random, singular] {
-        let mut own: Vec<&Candidate> = group.iter().filter(|c| c.size > 0.0).collect();
+        let mut own: Vec<&Candidate> = group.iter().filter(|c| c.is_whole).collect();
         own.sort_by(|a, b| a.size.total_cmp(&b.size));
         chosen.extend(own.into_iter().take(SMALL));
     }

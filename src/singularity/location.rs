@@ -85,13 +85,15 @@ const AWAY: f64 = 0.03;
 /// A configuration lies on a curve within this distance, radians.
 const ON_CURVE: f64 = 6e-3;
 /// Nodes nearer to each other are one, radians.
-const SAME: f64 = 1e-3;
+const SAME: f64 = 2e-3;
+/// A node may miss the pose by this, metres and radians.
+const NEARLY: f64 = 2e-6;
 /// Most nodes of a location: a pre-image with more is no set of curves.
 const MOST_NODES: usize = 64;
 /// Nodes are looked for where σ_m is below this share of σ₁.
 const NEAR: f64 = 0.02;
 /// Remains of starts that stalled next to a node are shorter, radians.
-const STALLED: f64 = 0.3;
+pub(super) const STALLED: f64 = 0.3;
 
 impl LocationSearch {
     /// For `chain` with one joint more than `task` has dimensions; `physical` holds the physical
@@ -243,7 +245,8 @@ impl Work<'_> {
         let sigma = self.arm.singular_values(theta);
         let guess = sigma.iter().filter(|s| **s < 0.03 * sigma[0]).count();
         for loss in (1..=guess.max(1)).rev() {
-            let Some(theta) = self.arm.settle(theta, loss, Some(self.tool)) else {
+            let exact = self.arm.settle(theta, loss, Some(self.tool));
+            let Some(theta) = exact.or_else(|| self.nearly(theta, loss)) else {
                 continue;
             };
             let parts = self.arm.parts(&theta);
@@ -277,6 +280,18 @@ impl Work<'_> {
             }
             return;
         }
+    }
+
+    /// The singular configuration next to `theta` if it holds the pose but for [`NEARLY`].
+    ///
+    /// A location that was refined numerically misses its nodes by what the refinement left.
+    fn nearly(&self, theta: &[f64], loss: usize) -> Option<Vec<f64>> {
+        let settled = self.arm.settle(theta, loss, None)?;
+        let miss = self
+            .arm
+            .difference(self.tool, &self.arm.chain.tool(&settled));
+        let miss = miss.iter().map(|x| x * x).sum::<f64>().sqrt();
+        (miss < NEARLY && apart(&settled, theta) < AWAY).then_some(settled)
     }
 
     /// Traces every branch through a node that no known manifold follows.

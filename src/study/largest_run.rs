@@ -10,9 +10,8 @@ use crate::report::{
     ArmPose, ArmPosesFigure, DistributionFigure, Figure, FindingReport, JointRangesFigure,
     ParetoFigure, ParetoPoint, ReportError, SizeSample, write_finding_report,
 };
-use crate::singularity::{
-    Candidate, Comparison, Location, LocationSearch, Origin, compare, find_largest,
-};
+use crate::singularity::{Candidate, Comparison, LocationSearch, Origin, compare, find_largest};
+use nalgebra::Vector3;
 use serde_json::{Value, json};
 use std::sync::atomic::Ordering;
 use std::time::Instant;
@@ -121,7 +120,7 @@ fn write(
     Ok(())
 }
 
-/// The arm in the most dexterous configuration and along the longest manifold.
+/// The arm in the most dexterous configuration and in others that look different.
 fn arms_figure(finding: &LargestFinding, search: &LocationSearch) -> ArmPosesFigure {
     let (robot, found) = (&finding.study.design.robot, finding.found);
     let best = arm_pose(
@@ -130,54 +129,53 @@ fn arms_figure(finding: &LargestFinding, search: &LocationSearch) -> ArmPosesFig
         format!("condition number {:.1}", found.best.dexterity.condition),
     );
     let mut poses: Vec<ArmPose> = vec![best];
-    for (number, theta) in (1..).zip(spread_out(&found.largest, search)) {
+    for (number, theta) in (1..).zip(spread_out(finding, search)) {
         poses.push(arm_pose(robot, &theta, format!("configuration {number}")));
     }
     ArmPosesFigure {
         name: "arm",
         poses,
         caption: "The arm in several configurations that hold the location with the largest \
-                  self-motion manifolds: the one with the least condition number, and others along \
-                  the longest manifold, with their shadows on the floor."
+                  self-motion manifolds: the one with the least condition number, and others far \
+                  away from it and from each other, with their shadows on the floor."
             .into(),
         title: robot.name.clone(),
     }
 }
 
-/// Configurations at even distances along the longest manifold, inside the physical limits.
-fn spread_out(location: &Location, search: &LocationSearch) -> Vec<Vec<f64>> {
-    let longest = location
-        .manifolds
-        .iter()
-        .max_by(|a, b| a.length.total_cmp(&b.length));
-    let Some(longest) = longest else {
-        return Vec::new();
-    };
+/// Configurations on the manifolds, inside the physical limits, whose joints are far apart in
+/// space from each other and from the most dexterous one.
+fn spread_out(finding: &LargestFinding, search: &LocationSearch) -> Vec<Vec<f64>> {
+    let robot = &finding.study.design.robot;
     let inside = |theta: &[f64]| {
         let mut pairs = theta.iter().zip(search.physical());
         pairs.all(|(&angle, arc)| arc.contains(angle))
     };
-    let (mut gone, mut marks) = (0.0, Vec::new());
-    for k in 0..longest.vertices() {
-        if inside(longest.point(k)) {
-            marks.push((gone, k));
-        }
-        if k + 1 < longest.vertices() {
-            gone += longest.segment_length(k);
+    let manifolds = finding.found.largest.manifolds.iter();
+    let points = manifolds.flat_map(|m| (0..m.vertices()).step_by(4).map(|k| m.point(k).to_vec()));
+    let choice: Vec<Vec<f64>> = points.filter(|theta| inside(theta)).collect();
+    let places = |theta: &Vec<f64>| arm_pose(robot, theta, String::new()).places;
+    let skeletons: Vec<_> = choice.iter().map(places).collect();
+    let mut chosen = vec![places(&finding.found.best.dexterity.theta)];
+    let mut found = Vec::new();
+    for _ in 0..DRAWN {
+        let gap = |k: usize| {
+            let distance = |other: &Vec<Vector3<f64>>| -> f64 {
+                let pairs = skeletons[k].iter().zip(other);
+                pairs.map(|(a, b)| (a - b).norm_squared()).sum()
+            };
+            chosen.iter().map(distance).fold(f64::INFINITY, f64::min)
+        };
+        let gaps: Vec<f64> = (0..choice.len()).map(gap).collect();
+        let Some(far) = (0..gaps.len()).max_by(|&a, &b| gaps[a].total_cmp(&gaps[b])) else {
+            break;
+        };
+        if gaps[far] > 1e-6 {
+            chosen.push(skeletons[far].clone());
+            found.push(choice[far].clone());
         }
     }
-    let wanted = (1..=DRAWN).map(|k| gone * k as f64 / (DRAWN + 1) as f64);
-    let nearest = |wanted: f64| {
-        let gap = |mark: &&(f64, usize)| (mark.0 - wanted).abs();
-        let mark = marks.iter().min_by(|a, b| gap(a).total_cmp(&gap(b)))?;
-        Some(mark.1)
-    };
-    let mut chosen: Vec<usize> = wanted.filter_map(nearest).collect();
-    chosen.dedup();
-    chosen
-        .into_iter()
-        .map(|k| longest.point(k).to_vec())
-        .collect()
+    found
 }
 
 fn pareto_figure(finding: &LargestFinding) -> ParetoFigure {
@@ -215,7 +213,8 @@ fn distribution_figure(finding: &LargestFinding, comparison: &Comparison) -> Dis
         name: name.map(String::from).to_vec(),
         sizes: sizes.to_vec(),
     };
-    let singular: Vec<f64> = found.singular.iter().map(|c| c.size).collect();
+    let singular = found.singular.iter().filter(|c| c.is_whole);
+    let singular: Vec<f64> = singular.map(|c| c.size).collect();
     DistributionFigure {
         samples: vec![
             sample(["random", "configurations"], &comparison.random),

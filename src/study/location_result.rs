@@ -239,11 +239,13 @@ pub(super) fn arm_pose(robot: &Robot, theta: &[f64], name: String) -> ArmPose {
     let places = joint_places(robot, &outer);
     let ends = places.iter().flat_map(|place| [place.entry, place.foot]);
     let mut corners: Vec<Vector3<f64>> = vec![Vector3::zeros()];
-    corners.extend(ends.chain([tool.translation.vector]));
+    let places: Vec<Vector3<f64>> = ends.collect();
+    corners.extend(places.iter().copied().chain([tool.translation.vector]));
     corners.dedup_by(|a, b| (*a - *b).norm() < 1e-6);
     ArmPose {
         name,
         corners,
+        places,
         tool,
     }
 }
