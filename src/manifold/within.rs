@@ -2,10 +2,6 @@
 
 use super::self_motion::SelfMotionManifold;
 
-/// Parts of a segment between which a curve is looked at. A segment is at most 0.4 rad long, so
-/// that what is overlooked inside a part is below 1e-5 rad.
-const PARTS: usize = 64;
-
 /// Halvings that locate where a curve leaves a box, far below a part's length.
 const HALVINGS: usize = 40;
 
@@ -20,7 +16,14 @@ pub struct Run {
 
 /// The connected parts of a manifold at whose configurations (internal joint variables) `is_inside`
 /// holds, in the order of the curve; the two ends of a closed curve are not joined.
-pub fn runs_inside(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) -> bool) -> Vec<Run> {
+///
+/// A curve is looked at between `parts` parts of every segment, which is at most 0.4 rad long:
+/// what leaves and comes back within a part is overlooked.
+pub fn runs_inside(
+    manifold: &SelfMotionManifold,
+    parts: usize,
+    is_inside: &impl Fn(&[f64]) -> bool,
+) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
     let first = manifold.point(0);
     let mut was_inside = is_inside(first);
@@ -28,8 +31,8 @@ pub fn runs_inside(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) ->
         runs.push(Run::at(first));
     }
     for index in 0..manifold.vertices().saturating_sub(1) {
-        for part in 1..=PARTS {
-            let [from, to] = [part - 1, part].map(|k| k as f64 / PARTS as f64);
+        for part in 1..=parts {
+            let [from, to] = [part - 1, part].map(|k| k as f64 / parts as f64);
             let next = manifold.at(index, to);
             let now = is_inside(&next);
             if now != was_inside {

@@ -11,7 +11,6 @@ use super::location::{Location, LocationSearch, STALLED};
 use super::pareto::front;
 use super::ranges::joint_ranges;
 use super::refine::{RefineSettings, Refined, refine};
-use super::surface::SingularSurface;
 use crate::manifold::{CurveStatus, SelfMotionManifold};
 use crate::sampling::stream;
 use rand::Rng;
@@ -213,25 +212,12 @@ pub(super) fn screen_one(
     let tool = search.arm().chain.tool(&theta);
     let (manifolds, size) = search.screen(&tool, false, &mut stream(seed, item));
     let physical = search.physical().to_vec();
-    let mut ranges = joint_ranges(&manifolds, &physical);
-    let mut size = size;
+    let ranges = joint_ranges(&manifolds, &physical);
     let closed = |manifold: &SelfMotionManifold| {
         matches!(manifold.status, CurveStatus::Closed | CurveStatus::Stroke)
     };
     let whole = |manifold: &SelfMotionManifold| closed(manifold) || manifold.length < STALLED;
-    let mut is_whole = manifolds.iter().any(closed) && manifolds.iter().all(whole);
-    if loss > 0
-        && !manifolds.iter().any(closed)
-        && let Some(surface) =
-            SingularSurface::through(&search.arm(), &tool, &theta, loss, &physical)
-    {
-        // Singular throughout: no curve could be traced to its end.
-        for (range, more) in ranges.iter_mut().zip(&surface.ranges) {
-            *range = range.union(more);
-        }
-        size = super::ranges::size(&ranges);
-        is_whole = true;
-    }
+    let is_whole = manifolds.iter().any(closed) && manifolds.iter().all(whole);
     let moves: Vec<bool> = ranges.iter().map(|range| range.measure() > STILL).collect();
     let inside = |theta: &[f64]| {
         let mut pairs = theta.iter().zip(&physical);
@@ -303,10 +289,8 @@ fn refine_all(
     ends.into_iter().unzip()
 }
 
-/// The smallest location of those that screening found smallest.
-///
-/// Where J is singular all along a curve, tracing ends early and screening finds too little;
-/// only a whole exploration counts.
+/// The smallest location of those that screening found smallest, and of some at which it could not
+/// trace whole manifolds because J is singular all along them.
 fn smallest(
     search: &LocationSearch,
     random: &[Candidate],
@@ -319,15 +303,19 @@ fn smallest(
         own.sort_by(|a, b| a.size.total_cmp(&b.size));
         chosen.extend(own.into_iter().take(SMALL));
     }
+    let mut rest: Vec<&Candidate> = singular.iter().filter(|c| !c.is_whole).collect();
+    rest.sort_by_key(|candidate| candidate.loss);
+    chosen.extend(rest.into_iter().take(SMALL));
     let run = |own: &mut LocationSearch, candidate: &&Candidate| {
         let location = explore(own, &candidate.theta, candidate.loss, seed);
         (location, candidate.theta.clone())
     };
     let found: Vec<(Location, Vec<f64>)> =
         chosen.par_iter().map_init(|| search.clone(), run).collect();
-    found
+    let whole = found
         .into_iter()
-        .min_by(|a, b| a.0.size.total_cmp(&b.0.size))
+        .filter(|(location, _)| location.is_whole());
+    whole.min_by(|a, b| a.0.size.total_cmp(&b.0.size))
 }
 
 /// The front of size against condition number, its members varied a few times.

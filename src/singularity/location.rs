@@ -71,6 +71,18 @@ pub struct Location {
     pub completeness: Completeness,
 }
 
+impl Location {
+    /// Whether every part of the pre-image was followed to its end, so that nothing is missing in
+    /// the size.
+    pub fn is_whole(&self) -> bool {
+        let ended = |manifold: &SelfMotionManifold| {
+            matches!(manifold.status, CurveStatus::Closed | CurveStatus::Stroke)
+        };
+        let some = !self.manifolds.is_empty() || !self.surfaces.is_empty();
+        some && self.manifolds.iter().all(ended)
+    }
+}
+
 /// Finds the manifolds of locations of one robot.
 #[derive(Clone, Debug)]
 pub struct LocationSearch {
@@ -265,6 +277,10 @@ impl Work<'_> {
             {
                 return;
             }
+            let point = (theta.as_slice(), loss);
+            let around =
+                SingularSurface::beside(&self.arm, self.tool, point, self.physical, &self.surfaces);
+            self.surfaces.extend(around);
             let surface =
                 SingularSurface::through(&self.arm, self.tool, &theta, loss, self.physical);
             if let Some(surface) = surface {
@@ -286,12 +302,11 @@ impl Work<'_> {
     ///
     /// A location that was refined numerically misses its nodes by what the refinement left.
     fn nearly(&self, theta: &[f64], loss: usize) -> Option<Vec<f64>> {
-        let settled = self.arm.settle(theta, loss, None)?;
-        let miss = self
+        let close = self
             .arm
-            .difference(self.tool, &self.arm.chain.tool(&settled));
-        let miss = miss.iter().map(|x| x * x).sum::<f64>().sqrt();
-        (miss < NEARLY && apart(&settled, theta) < AWAY).then_some(settled)
+            .settle_within(theta, loss, Some(self.tool), NEARLY)?;
+        let settled = self.arm.settle(&close, loss, None)?;
+        (apart(&settled, &close) < SAME).then_some(settled)
     }
 
     /// Traces every branch through a node that no known manifold follows.

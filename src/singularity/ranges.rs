@@ -3,6 +3,9 @@
 use crate::angle::{AngleSet, Arc};
 use crate::manifold::{SelfMotionManifold, runs_inside};
 
+/// Parts of a segment between which a curve is looked at.
+const PARTS: usize = 8;
+
 /// Angles of every joint over the parts of `manifolds` inside the physical limits of all joints,
 /// given as arcs of internal variables.
 pub fn joint_ranges(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<AngleSet> {
@@ -16,7 +19,7 @@ pub fn joint_ranges(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<A
     };
     let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); physical.len()];
     for manifold in manifolds {
-        for run in runs_inside(manifold, &is_inside) {
+        for run in runs_inside(manifold, PARTS, &is_inside) {
             for (arcs, [low, high]) in arcs.iter_mut().zip(run.spans) {
                 arcs.push(Arc::from_interval(low, high));
             }

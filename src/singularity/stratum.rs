@@ -80,6 +80,18 @@ impl Arm<'_> {
         loss: usize,
         tool: Option<&Isometry3<f64>>,
     ) -> Option<Vec<f64>> {
+        self.settle_within(theta, loss, tool, 1e-10)
+    }
+
+    /// As [`Arm::settle`], with `slack` (metres and radians) in the equations where no
+    /// configuration solves them all.
+    pub(super) fn settle_within(
+        &self,
+        theta: &[f64],
+        loss: usize,
+        tool: Option<&Isometry3<f64>>,
+        slack: f64,
+    ) -> Option<Vec<f64>> {
         let mut theta = theta.to_vec();
         let mut least = f64::INFINITY;
         for step in 0..STEPS {
@@ -95,7 +107,7 @@ impl Arm<'_> {
                     .copy_from(&self.at(&theta).jacobian());
             }
             let norm = value.norm();
-            if norm < 1e-13 || (norm < 1e-10 && norm > 0.5 * least) {
+            if norm < 1e-13 || (norm < slack && norm > 0.5 * least) {
                 return Some(theta);
             }
             least = least.min(norm);

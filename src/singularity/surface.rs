@@ -28,6 +28,8 @@ pub struct SingularSurface {
 
 /// Step of a walk, radians.
 const STEP: f64 = 0.2;
+/// Step with which surfaces around a configuration are looked for, radians.
+const PROBE: f64 = 0.2;
 /// Most steps of a walk.
 const MOST_STEPS: usize = 150;
 /// Share of a joint's axis in the surface below which the joint has reached an end.
@@ -93,6 +95,52 @@ impl SingularSurface {
         Some(surface)
     }
 
+    /// Surfaces of less rank loss that a configuration of rank loss `loss` lies on: looked for along
+    /// directions of the null space, `known` ones left out.
+    pub(super) fn beside(
+        arm: &Arm,
+        tool: &Isometry3<f64>,
+        (theta, loss): (&[f64], usize),
+        physical: &[Arc],
+        known: &[SingularSurface],
+    ) -> Vec<SingularSurface> {
+        let null = arm.parts(theta).still(loss + arm.surplus());
+        let size = null.ncols();
+        let mut shares: Vec<DVector<f64>> = Vec::new();
+        for i in 0..size {
+            for k in i..size {
+                let share = |row: usize| f64::from(u8::from(row == i || row == k));
+                shares.push(DVector::from_fn(size, |row, _| share(row)).normalize());
+            }
+        }
+        let mut found: Vec<SingularSurface> = Vec::new();
+        for less in 1..loss {
+            for share in &shares {
+                let has = |s: &SingularSurface| s.loss == less && s.holds(theta);
+                if known.iter().chain(&found).any(has) {
+                    break;
+                }
+                let step = &null * share;
+                let moved: Vec<f64> = theta
+                    .iter()
+                    .zip(step.iter())
+                    .map(|(a, d)| a + PROBE * d)
+                    .collect();
+                let Some(settled) = arm.settle(&moved, less, Some(tool)) else {
+                    continue;
+                };
+                let away = super::location::apart(&settled, theta);
+                let lost = arm.parts(&settled).loss(super::SINGULAR);
+                if lost == less && (0.3 * PROBE..3.0 * PROBE).contains(&away) {
+                    found.extend(SingularSurface::through(
+                        arm, tool, &settled, less, physical,
+                    ));
+                }
+            }
+        }
+        found
+    }
+
     /// Whether `theta` agrees with the surface in the joints that stand still on it.
     pub(super) fn holds(&self, theta: &[f64]) -> bool {
         let same = |&joint: &usize| wrap(theta[joint] - self.theta[joint]).abs() < 1e-5;
@@ -119,10 +167,23 @@ impl SingularSurface {
             for sense in [1.0, -1.0] {
                 let mut theta = self.theta.clone();
                 let mut spans: Vec<[f64; 2]> = theta.iter().map(|&a| [a, a]).collect();
+                let mut heading: Option<Vec<f64>> = None;
                 for _ in 0..MOST_STEPS {
-                    let Some(next) = self.pushed(arm, tool, &theta, joint, sense) else {
+                    let pushed = self.pushed(arm, tool, &theta, joint, sense);
+                    let next = pushed.or_else(|| {
+                        // Across a point of lower rank, where the surface's tangent is not known.
+                        let ahead = heading.as_ref()?;
+                        self.stepped(arm, tool, &theta, ahead, [joint as f64, sense])
+                    });
+                    let Some(next) = next else {
                         break;
                     };
+                    heading = Some(
+                        next.iter()
+                            .zip(&theta)
+                            .map(|(b, a)| b - a)
+                            .collect::<Vec<_>>(),
+                    );
                     if !inside(&next) {
                         break;
                     }
@@ -158,11 +219,27 @@ impl SingularSurface {
         if norm < LEVEL {
             return None;
         }
+        let ahead: Vec<f64> = push.iter().copied().collect();
+        self.stepped(arm, tool, theta, &ahead, [joint as f64, sense])
+    }
+
+    /// A step along `ahead` and back onto the surface, in which the joint `axis[0]` moves with the
+    /// sign `axis[1]`.
+    fn stepped(
+        &self,
+        arm: &Arm,
+        tool: &Isometry3<f64>,
+        theta: &[f64],
+        ahead: &[f64],
+        axis: [f64; 2],
+    ) -> Option<Vec<f64>> {
+        let (joint, sense) = (axis[0] as usize, axis[1]);
+        let norm = ahead.iter().map(|x| x * x).sum::<f64>().sqrt().max(1e-12);
         let mut step = STEP;
         while step > 1e-3 {
             let guess: Vec<f64> = theta
                 .iter()
-                .zip(push.iter())
+                .zip(ahead)
                 .map(|(a, d)| a + step * d / norm)
                 .collect();
             if let Some(next) = arm.settle(&guess, self.loss, Some(tool))

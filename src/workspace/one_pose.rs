@@ -9,6 +9,10 @@ use super::{ArtificialLimits, FailureSet};
 use crate::angle::{AngleSet, Arc};
 use crate::manifold::{PreImage, SelfMotionManifold, runs_inside};
 
+/// Parts of a segment between which a curve is looked at. A segment is at most 0.4 rad long, so
+/// that what is overlooked inside a part is below 1e-5 rad.
+const PARTS: usize = 64;
+
 /// Which failures a pose survives.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseTolerance {
@@ -79,7 +83,7 @@ pub fn ranges_within(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<
 fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]]) -> Vec<AngleSet> {
     let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); bounds.len()];
     for manifold in manifolds {
-        for run in runs_inside(manifold, &|theta: &[f64]| is_inside(theta, bounds)) {
+        for run in runs_inside(manifold, PARTS, &|theta: &[f64]| is_inside(theta, bounds)) {
             for (arcs, [low, high]) in arcs.iter_mut().zip(run.spans) {
                 arcs.push(Arc::from_interval(low, high));
             }
@@ -92,7 +96,7 @@ fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]])
 /// but joint 1's [S4 §III.B], in internal joint variables unwrapped along the curve.
 pub fn limit_crossings(manifold: &SelfMotionManifold, limits: &ArtificialLimits) -> Vec<Vec<f64>> {
     let bounds: Vec<[Arc; 1]> = limits.joints().iter().map(|l| [l.arc()]).collect();
-    let runs = runs_inside(manifold, &|theta: &[f64]| is_inside(theta, &bounds));
+    let runs = runs_inside(manifold, PARTS, &|theta: &[f64]| is_inside(theta, &bounds));
     runs.into_iter().flat_map(|run| run.ends).collect()
 }
 
