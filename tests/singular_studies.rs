@@ -86,7 +86,7 @@ fn the_largest_manifold_of_a_planar_arm() {
     assert!(size("largest_size") <= size("most_possible") + 1e-9);
     assert!(size("smallest_size") <= size("largest_size"));
     assert!(
-        found["pareto"]
+        found["pareto"][0]["locations"]
             .as_array()
             .is_some_and(|front| !front.is_empty())
     );

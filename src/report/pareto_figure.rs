@@ -1,10 +1,12 @@
-//! Size of a location against the best condition number on it [S1 Fig. 7d].
+//! Size of a location against the best local measures on it [S1 Fig. 7d].
 
 use super::canvas::{Canvas, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
 use super::panel::{self, BOTTOM, Panel};
-use super::style::{BLUE, COLUMN, GREY, MARGIN, ORANGE, TITLE, VERMILLION, translucent};
+use super::style::{
+    BLUE, DOUBLE_COLUMN, GREY, MARGIN, NORMAL, ORANGE, TITLE, VERMILLION, translucent,
+};
 use super::table::{Table, cell};
 use super::ticks::{self, Tick};
 use plotters::style::RGBAColor;
@@ -15,37 +17,102 @@ use plotters::style::text_anchor::HPos;
 pub struct ParetoPoint {
     /// Sum of all joint ranges, radians.
     pub size: f64,
-    /// Least condition number over its configurations.
-    pub condition: f64,
-    /// Greatest manipulability over its configurations.
-    pub manipulability: f64,
-    /// Greatest worst-case fault-tolerant manipulability over its configurations.
-    pub fault_tolerant: f64,
+    /// Over its configurations the least condition number, the greatest manipulability and the
+    /// greatest worst-case fault-tolerant manipulability.
+    pub measures: [f64; 3],
     /// Where it came from, as in "random".
     pub origin: String,
-    /// Whether no other location beats it in size and condition number.
-    pub is_on_front: bool,
 }
 
-/// Locations and their front.
+/// Locations and their fronts.
 #[derive(Clone, Debug)]
 pub struct ParetoFigure {
-    /// The locations, those on the front in order of size.
+    /// The locations.
     pub points: Vec<ParetoPoint>,
-    /// Title above the plot; none if empty.
+    /// For every measure the locations that no other beats in size and measure, in order of size.
+    pub fronts: [Vec<ParetoPoint>; 3],
+    /// Title above the plots; none if empty.
     pub title: String,
 }
 
-const HEAD: f64 = 18.0 + 2.0 * LEGEND_ROW;
-const HEIGHT: f64 = 150.0;
+const HEAD: f64 = 22.0 + LEGEND_ROW;
+const HEIGHT: f64 = 140.0;
+/// Space between panels beside their tick labels, points.
+const GAP: f64 = 10.0;
 /// Worse condition numbers are left out of the picture.
 const WORST: f64 = 300.0;
+const NAMES: [&str; 3] = [
+    "least condition number",
+    "greatest manipulability",
+    "greatest fault-tol. manipulability",
+];
 
 fn colour(origin: &str) -> RGBAColor {
     match origin {
         "random" => translucent(GREY, 0.6),
         "singular" => translucent(BLUE, 0.6),
         _ => translucent(ORANGE, 0.9),
+    }
+}
+
+/// Where a measure stands on its axis: condition numbers by their logarithm.
+fn height(measure: usize, value: f64) -> f64 {
+    if measure == 0 { value.log10() } else { value }
+}
+
+impl ParetoFigure {
+    fn draw_panel(&self, canvas: &mut Canvas, measure: usize) {
+        let is_shown = |p: &&ParetoPoint| {
+            let value = p.measures[measure];
+            p.size.is_finite() && value.is_finite() && (measure > 0 || value < WORST)
+        };
+        let all = || {
+            self.points
+                .iter()
+                .chain(&self.fronts[measure])
+                .filter(is_shown)
+        };
+        let x = panel::range(all().map(|p| p.size), 0.04);
+        let y = panel::range(all().map(|p| height(measure, p.measures[measure])), 0.06);
+        let x_ticks = ticks::round(x[0], x[1], 5);
+        let y_ticks: Vec<Tick> = match measure {
+            0 => [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0]
+                .into_iter()
+                .map(|value: f64| Tick {
+                    value: value.log10(),
+                    label: format!("{value}"),
+                })
+                .filter(|tick| (y[0]..=y[1]).contains(&tick.value))
+                .collect(),
+            _ => ticks::round(y[0], y[1], 5),
+        };
+        let share = (DOUBLE_COLUMN - 2.0 * MARGIN) / 3.0;
+        let inset = 36.0;
+        let panel = Panel {
+            left: MARGIN + measure as f64 * share + inset,
+            top: HEAD,
+            width: share - inset - GAP,
+            height: HEIGHT,
+            x,
+            y,
+        };
+        panel.grid(canvas, &y_ticks);
+        let at = |p: &ParetoPoint| panel.at(p.size, height(measure, p.measures[measure]));
+        for point in self.points.iter().filter(is_shown) {
+            canvas.disc(at(point), 1.0, colour(&point.origin));
+        }
+        let front: Vec<&ParetoPoint> = self.fronts[measure].iter().filter(is_shown).collect();
+        let line: Vec<[f64; 2]> = front.iter().map(|p| at(p)).collect();
+        canvas.stroke(&line, 0.9, VERMILLION);
+        for point in &line {
+            canvas.disc(*point, 1.1, VERMILLION);
+        }
+        panel.axes(canvas, &x_ticks, &y_ticks, true);
+        panel.x_label(canvas, "size (rad)");
+        panel.y_label(canvas, NAMES[measure], &y_ticks);
+        let letter = format!("({})", (b'a' + measure as u8) as char);
+        let corner = [panel.left + panel.width - 12.0, HEAD + 8.0];
+        Label::new(&letter, NORMAL).bold().draw(canvas, corner);
     }
 }
 
@@ -56,89 +123,56 @@ impl Figure for ParetoFigure {
 
     fn caption(&self) -> String {
         format!(
-            "Size of a location against the least condition number of the Jacobian over its \
-             configurations. On the front (line) no location is beaten in both. Locations with \
-             condition numbers above {WORST} are not shown."
+            "Size of a location against the best measures over its configurations: (a) condition \
+             number, (b) manipulability, (c) worst-case fault-tolerant manipulability over the \
+             joints that move. On the fronts (lines) no location is beaten in both. Condition \
+             numbers above {WORST} are not shown."
         )
     }
 
     fn size(&self) -> Size {
         Size {
-            width: COLUMN,
+            width: DOUBLE_COLUMN,
             height: HEAD + HEIGHT + BOTTOM + 2.0,
         }
     }
 
     fn draw(&self, canvas: &mut Canvas) {
         let title = Label::new(&self.title, TITLE).bold().align(HPos::Center);
-        title.draw_within(canvas, [0.5 * COLUMN, 12.0], COLUMN - 2.0 * MARGIN);
-        let shown: Vec<&ParetoPoint> = self
-            .points
-            .iter()
-            .filter(|p| p.condition < WORST && p.size.is_finite())
-            .collect();
-        let x = panel::range(shown.iter().map(|p| p.size), 0.04);
-        let y = panel::range(shown.iter().map(|p| p.condition.log10()), 0.06);
-        let x_ticks = ticks::round(x[0], x[1], 6);
-        let y_ticks: Vec<Tick> = [1.0, 2.0, 5.0, 10.0, 20.0, 50.0, 100.0, 200.0]
-            .into_iter()
-            .map(|value: f64| Tick {
-                value: value.log10(),
-                label: format!("{value}"),
-            })
-            .filter(|tick| (y[0]..=y[1]).contains(&tick.value))
-            .collect();
-        let left = panel::left(&y_ticks);
+        let middle = [0.5 * DOUBLE_COLUMN, 12.0];
+        title.draw_within(canvas, middle, DOUBLE_COLUMN - 2.0 * MARGIN);
         let entries = [
             (Swatch::Dot(GREY), "random start"),
             (Swatch::Dot(BLUE), "singular configuration"),
-            (Swatch::Dot(ORANGE), "refined, varied"),
+            (Swatch::Dot(ORANGE), "refined"),
             (Swatch::Line(VERMILLION), "Pareto front"),
         ];
-        legend(canvas, [left, 22.0], COLUMN - left - MARGIN, 2, &entries);
-        let panel = Panel {
-            left,
-            top: HEAD,
-            width: COLUMN - left - MARGIN - 4.0,
-            height: HEIGHT,
-            x,
-            y,
-        };
-        panel.grid(canvas, &y_ticks);
-        let at = |p: &ParetoPoint| panel.at(p.size, p.condition.log10());
-        for point in shown.iter().filter(|p| !p.is_on_front) {
-            canvas.disc(at(point), 1.1, colour(&point.origin));
-        }
-        let front: Vec<&&ParetoPoint> = shown.iter().filter(|p| p.is_on_front).collect();
-        let line: Vec<[f64; 2]> = front.iter().map(|p| at(p)).collect();
-        canvas.stroke(&line, 0.9, VERMILLION);
-        for point in front {
-            canvas.disc(at(point), 1.1, VERMILLION);
-        }
-        panel.axes(canvas, &x_ticks, &y_ticks, true);
-        panel.x_label(canvas, "size (rad)");
-        panel.y_label(canvas, "least condition number", &y_ticks);
+        legend(canvas, [MARGIN + 36.0, 23.0], 400.0, 4, &entries);
+        (0..3).for_each(|measure| self.draw_panel(canvas, measure));
     }
 
     fn table(&self) -> Table {
         let mut table = Table::new(&[
             "origin",
-            "on_front",
+            "front",
             "size_rad",
             "condition",
             "manipulability",
             "fault_tolerant_manipulability",
         ]);
-        for point in &self.points {
-            let numbers = [
-                point.size,
-                point.condition,
-                point.manipulability,
-                point.fault_tolerant,
-            ];
-            let mut row = vec![point.origin.clone(), point.is_on_front.to_string()];
-            row.extend(numbers.map(cell));
+        let mut add = |front: &str, point: &ParetoPoint| {
+            let mut row = vec![point.origin.clone(), front.to_owned(), cell(point.size)];
+            row.extend(point.measures.map(cell));
             table.rows.push(row);
+        };
+        for point in &self.points {
+            add("", point);
+        }
+        let names = ["condition", "manipulability", "fault_tolerant"];
+        for (name, front) in names.into_iter().zip(&self.fronts) {
+            for point in front {
+                add(name, point);
+            }
         }
         table
     }

@@ -1,7 +1,7 @@
 //! All self-motion manifolds of one location in the spaces of several triples of joints, coloured by
 //! a further joint [S1 Figs. 3–5].
 
-use super::axonometry::{Axis, AxisBox, Camera};
+use super::axonometry::{Axis, AxisBox, Camera, Point3};
 use super::canvas::{Canvas, Point, Size};
 use super::figure::Figure;
 use super::label::{Label, Swatch, legend, rectangle};
@@ -121,9 +121,12 @@ impl ProjectionsFigure<'_> {
             .iter()
             .filter(|(q, _)| is_drawable(q, self.joint_count))
         {
-            let at = scene.at(joints.map(|joint| wrap(theta[joint - 1]).to_degrees()));
-            canvas.disc(at, 2.5, WHITE);
-            canvas.disc(at, 1.9, loss_colour(*loss));
+            let angles = joints.map(|joint| wrap(theta[joint - 1]).to_degrees());
+            for place in at_both_ends(angles) {
+                let at = scene.at(place);
+                canvas.disc(at, 2.5, WHITE);
+                canvas.disc(at, 1.9, loss_colour(*loss));
+            }
         }
         scene.draw_axes(canvas, &axes);
     }
@@ -161,7 +164,10 @@ impl ProjectionsFigure<'_> {
             let rank = self.rank.saturating_sub(*loss);
             (
                 Swatch::Dot(loss_colour(*loss)),
-                format!("{count} singular configurations of rank {rank}"),
+                match count {
+                    1 => format!("singular configuration of rank {rank}"),
+                    _ => format!("{count} singular configurations of rank {rank}"),
+                },
             )
         };
         let entries: Vec<(Swatch, String)> = losses.iter().map(entry).collect();
@@ -174,6 +180,21 @@ impl ProjectionsFigure<'_> {
             &entries,
         );
     }
+}
+
+/// A configuration next to ±180° of an axis stands at both of its ends.
+fn at_both_ends(angles: Point3) -> Vec<Point3> {
+    let mut places = vec![angles];
+    for axis in 0..3 {
+        if angles[axis].abs() > 179.5 {
+            let mirrored = places.clone().into_iter().map(|mut place| {
+                place[axis] = -place[axis];
+                place
+            });
+            places.extend(mirrored);
+        }
+    }
+    places
 }
 
 /// Parts of a line of one colour are at least this long, points.

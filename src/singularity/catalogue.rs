@@ -8,8 +8,9 @@
 
 use super::descent::{Descent, DescentSettings, DescentStatus, descend};
 use super::stratum::{Arm, SINGULAR};
-use crate::angle::wrap;
+use crate::angle::{Arc, wrap};
 use crate::design::TaskSpace;
+use crate::kinematics::ChainJoint;
 use crate::sampling::stream;
 use rand::Rng;
 use rayon::prelude::*;
@@ -110,19 +111,30 @@ pub(super) fn symmetric_joints(arm: &Arm) -> Vec<usize> {
     symmetric
 }
 
-/// The configuration of start number `start`: uniform on circles and strokes.
-pub fn random_configuration(arm: &Arm, seed: u64, start: usize) -> Vec<f64> {
+/// The configuration of start number `start`: uniform on circles and strokes, and within
+/// `physical` limits (arcs of internal variables, one per joint).
+pub fn random_configuration(arm: &Arm, physical: &[Arc], seed: u64, start: usize) -> Vec<f64> {
     let mut rng = stream(seed, start as u64);
-    let joints = arm.chain.joints.iter();
-    let draw = |turn: f64| if turn == 0.0 { FRAC_PI_2 } else { PI };
-    joints
-        .map(|joint| draw(joint.turn))
-        .map(|half| rng.random_range(-half..half))
-        .collect()
+    let joints = arm.chain.joints.iter().zip(physical);
+    let draw = |(joint, arc): (&ChainJoint, &Arc)| {
+        let half = if joint.turn == 0.0 { FRAC_PI_2 } else { PI };
+        let angle = rng.random_range(-half..half);
+        match joint.turn == 0.0 || arc.is_full() {
+            true => angle,
+            false => arc.start() + arc.width() * (0.5 + 0.5 * angle / PI),
+        }
+    };
+    joints.map(draw).collect()
 }
 
-/// Finds singular configurations from random starts, one stream of `seed` each.
-pub fn find_singularities(arm: &Arm, settings: &SingularitySettings, seed: u64) -> Catalogue {
+/// Finds singular configurations from random starts within `physical` limits, one stream of `seed`
+/// each. Descents may leave the limits.
+pub fn find_singularities(
+    arm: &Arm,
+    physical: &[Arc],
+    settings: &SingularitySettings,
+    seed: u64,
+) -> Catalogue {
     let mut catalogue = Catalogue {
         singularities: Vec::new(),
         families: Vec::new(),
@@ -131,7 +143,7 @@ pub fn find_singularities(arm: &Arm, settings: &SingularitySettings, seed: u64) 
     };
     for loss in 1..=settings.max_loss.min(arm.task.dimension()) {
         let run = |start: usize| {
-            let theta = random_configuration(arm, seed, start);
+            let theta = random_configuration(arm, physical, seed, start);
             descend(arm, &theta, loss, &settings.descent)
         };
         let ends: Vec<Descent> = (0..settings.starts).into_par_iter().map(run).collect();

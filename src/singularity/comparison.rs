@@ -28,7 +28,7 @@ const SCREEN: u64 = 5 << 36;
 pub fn compare(search: &LocationSearch, count: usize, moves: &[bool], seed: u64) -> Comparison {
     let arm = search.arm();
     let draw = |k: usize| {
-        let theta = random_configuration(&arm, seed, DRAW + k);
+        let theta = random_configuration(&arm, search.physical(), seed, DRAW + k);
         let [_, manipulability, fault_tolerant] = measures(&arm, &theta, moves);
         (theta, [manipulability, fault_tolerant])
     };

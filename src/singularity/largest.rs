@@ -8,7 +8,7 @@
 use super::catalogue::{Catalogue, SingularitySettings, find_singularities, random_configuration};
 use super::dexterity::{Dexterity, STILL, measures};
 use super::location::{Location, LocationSearch, STALLED};
-use super::pareto::front;
+use super::pareto::{Measure, front};
 use super::ranges::joint_ranges;
 use super::refine::{RefineSettings, Refined, refine};
 use crate::manifold::{CurveStatus, SelfMotionManifold};
@@ -37,7 +37,7 @@ impl Default for LargestSettings {
             singularities: SingularitySettings::default(),
             finalists: 2,
             refine: RefineSettings::default(),
-            pareto_rounds: 4,
+            pareto_rounds: 3,
         }
     }
 }
@@ -96,8 +96,9 @@ pub struct Largest {
     /// The location with the least size of all that were screened, explored whole, and a
     /// configuration there.
     pub smallest: (Location, Vec<f64>),
-    /// Locations that no other beats in both size and condition number, largest first.
-    pub pareto: Vec<Candidate>,
+    /// For each of [`Measure::ALL`] the locations that no other beats in both size and measure,
+    /// largest first.
+    pub pareto: [Vec<Candidate>; 3],
 }
 
 /// Vertices at which the dexterity of a screened location is measured.
@@ -126,14 +127,14 @@ pub fn find_largest(
 ) -> Option<Largest> {
     let arm = search.arm();
     watch("descending to singular configurations", 0, 4);
-    let catalogue = find_singularities(&arm, &settings.singularities, seed);
+    let catalogue = find_singularities(&arm, search.physical(), &settings.singularities, seed);
     if stop() {
         return None;
     }
     watch("screening locations", 1, 4);
     let starts = settings.singularities.starts;
     let of_start = |start: usize| {
-        let theta = random_configuration(&arm, seed, start);
+        let theta = random_configuration(&arm, search.physical(), seed, start);
         (theta, 0, start, Origin::Random)
     };
     let mut items: Vec<_> = (0..starts).map(of_start).collect();
@@ -165,7 +166,8 @@ pub fn find_largest(
     let mut own = search.clone();
     let largest = explore(&mut own, &best.theta, best.loss, seed);
     let smallest = smallest(search, &random, &singular, seed)?;
-    let pareto = pareto(search, all().cloned().collect(), settings, seed);
+    let known: Vec<Candidate> = all().filter(|c| c.is_whole).cloned().collect();
+    let pareto = Measure::ALL.map(|measure| pareto(search, &known, measure, settings, seed));
     Some(Largest {
         best: best.clone(),
         largest,
@@ -318,14 +320,15 @@ fn smallest(
     whole.min_by(|a, b| a.0.size.total_cmp(&b.0.size))
 }
 
-/// The front of size against condition number, its members varied a few times.
+/// The front of size against `measure`, its members varied a few times.
 fn pareto(
     search: &LocationSearch,
-    all: Vec<Candidate>,
+    all: &[Candidate],
+    measure: Measure,
     settings: &LargestSettings,
     seed: u64,
 ) -> Vec<Candidate> {
-    let mut best = front(all);
+    let mut best = front(all.to_vec(), measure);
     for round in 0..settings.pareto_rounds {
         let spread = 0.3 * 0.5f64.powi(round as i32);
         let vary = |(index, member): (usize, &Candidate)| {
@@ -343,7 +346,8 @@ fn pareto(
         };
         let items: Vec<Item> = best.iter().enumerate().filter_map(vary).collect();
         let varied = screen_all(search, items, seed, VARY + ((round as u64) << 24));
-        best = front(best.into_iter().chain(varied).collect());
+        let whole = varied.into_iter().filter(|c| c.is_whole);
+        best = front(best.into_iter().chain(whole).collect(), measure);
     }
     best
 }

@@ -36,7 +36,7 @@ pub use dexterity::{Dexterity, measures};
 pub use failure::{FailureExperiment, FailureSettings, JointOutcome, Lock, REACHED};
 pub use largest::{Candidate, Largest, LargestSettings, Origin, Watch, find_largest};
 pub use location::{ConnectedSet, Location, LocationSearch, Node};
-pub use pareto::front;
+pub use pareto::{Measure, front};
 pub use ranges::{joint_ranges, size};
 pub use refine::{RefineSettings, Refined, refine};
 pub use split::{Split, find_split};

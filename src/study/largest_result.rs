@@ -7,7 +7,7 @@ use super::settings::Study;
 use super::singular_settings::LargestManifold;
 use crate::angle::Arc;
 use crate::report::{Section, Table, joint_symbol};
-use crate::singularity::{Candidate, Comparison, Largest};
+use crate::singularity::{Candidate, Comparison, Largest, Measure};
 use serde_json::{Value, json};
 
 /// Everything that a finished search knows.
@@ -55,8 +55,12 @@ impl LargestFinding<'_> {
             value
         });
         result["refined"] = refined.collect();
-        let front = found.pareto.iter();
-        result["pareto"] = front.map(|c| self.candidate(c, &joints)).collect();
+        let fronts = Measure::ALL.iter().zip(&found.pareto);
+        let fronts = fronts.map(|(measure, front)| {
+            let members = front.iter().map(|c| self.candidate(c, &joints));
+            json!({ "measure": measure, "locations": members.collect::<Vec<Value>>() })
+        });
+        result["pareto"] = fronts.collect();
         if let Some(comparison) = self.comparison {
             result["distributions"] = json!({
                 "random": quantiles(&comparison.random),

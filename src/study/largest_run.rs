@@ -85,7 +85,7 @@ fn write(
     let (study, found) = (finding.study, finding.found);
     let robot = &study.design.robot;
     let title = robot.name.clone();
-    let projections = Projections::of(&found.largest, study);
+    let projections = Projections::of(&found.largest, study, finding.physical);
     let projections = projections.as_ref().map(|p| p.figure(&title));
     let ranges = JointRangesFigure {
         ranges: &found.largest.ranges,
@@ -180,11 +180,13 @@ fn spread_out(finding: &LargestFinding, search: &LocationSearch) -> Vec<Vec<f64>
 
 fn pareto_figure(finding: &LargestFinding) -> ParetoFigure {
     let found = finding.found;
-    let point = |candidate: &Candidate, is_on_front: bool| ParetoPoint {
+    let point = |candidate: &Candidate| ParetoPoint {
         size: candidate.size,
-        condition: candidate.dexterity.condition,
-        manipulability: candidate.dexterity.manipulability,
-        fault_tolerant: candidate.dexterity.fault_tolerant,
+        measures: [
+            candidate.dexterity.condition,
+            candidate.dexterity.manipulability,
+            candidate.dexterity.fault_tolerant,
+        ],
         origin: match candidate.origin {
             Origin::Random => "random",
             Origin::Singular => "singular",
@@ -192,17 +194,15 @@ fn pareto_figure(finding: &LargestFinding) -> ParetoFigure {
             Origin::Varied => "varied",
         }
         .into(),
-        is_on_front,
     };
-    let all = found
-        .random
-        .iter()
-        .chain(&found.singular)
-        .chain(&found.refined);
-    let mut points: Vec<ParetoPoint> = all.map(|c| point(c, false)).collect();
-    points.extend(found.pareto.iter().map(|c| point(c, true)));
+    let all = found.random.iter().chain(&found.singular);
+    let all = all.chain(&found.refined).filter(|c| c.is_whole);
     ParetoFigure {
-        points,
+        points: all.map(point).collect(),
+        fronts: found
+            .pareto
+            .each_ref()
+            .map(|front| front.iter().map(point).collect()),
         title: finding.study.design.robot.name.clone(),
     }
 }

@@ -176,7 +176,7 @@ pub(super) struct Projections {
 }
 
 impl Projections {
-    pub fn of(location: &Location, study: &Study) -> Option<Projections> {
+    pub fn of(location: &Location, study: &Study, physical: &[Arc]) -> Option<Projections> {
         if location.manifolds.is_empty() {
             return None;
         }
@@ -201,7 +201,11 @@ impl Projections {
         };
         let colour = moving.iter().rev().find(narrow).or(moving.last())?;
         Some(Projections {
-            curves: location.manifolds.iter().map(drawn).collect(),
+            curves: location
+                .manifolds
+                .iter()
+                .flat_map(|manifold| parts_inside(drawn(manifold), physical))
+                .collect(),
             nodes: location
                 .nodes
                 .iter()
@@ -225,6 +229,24 @@ impl Projections {
             title: title.to_owned(),
         }
     }
+}
+
+/// The parts of a curve inside the physical limits.
+fn parts_inside(curve: ManifoldCurve, physical: &[Arc]) -> Vec<ManifoldCurve> {
+    if physical.iter().all(Arc::is_full) {
+        return vec![curve];
+    }
+    let inside = |theta: &Vec<f64>| {
+        let mut pairs = theta.iter().zip(physical);
+        pairs.all(|(&angle, arc)| arc.contains(angle))
+    };
+    let runs = curve.points.chunk_by(|a, b| inside(a) && inside(b));
+    let runs = runs.filter(|run| run.len() > 1);
+    runs.map(|run| ManifoldCurve {
+        points: run.to_vec(),
+        closed: false,
+    })
+    .collect()
 }
 
 /// The skeleton of the robot in a configuration (internal joint variables).

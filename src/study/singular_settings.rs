@@ -25,7 +25,7 @@ pub struct LargestSearch {
     pub finalists: u64,
     /// Most locations computed for each, default 250.
     pub evaluations: u64,
-    /// Rounds in which the Pareto front is varied, default 4.
+    /// Rounds in which the Pareto fronts are varied, default 3.
     pub pareto_rounds: u64,
     /// Configurations per distribution of sizes, default 300; 0 for none.
     pub comparison: u64,

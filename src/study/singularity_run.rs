@@ -36,11 +36,12 @@ pub(super) fn run(
     let robot = &study.design.robot;
     let chain =
         Chain::new(robot).ok_or_else(|| anyhow!("a prismatic joint without physical limits"))?;
+    let physical = crate::manifold::physical_arcs(robot);
     let arm = Arm {
         chain: &chain,
         task: study.task,
     };
-    let catalogue = find_singularities(&arm, &search.settings(), study.seed);
+    let catalogue = find_singularities(&arm, &physical, &search.settings(), study.seed);
     progress.update(1, 3, f64::NAN, "tracing manifolds beside one of them");
     // With another degree of redundancy there are no curves to show.
     let mut locations = location_search(study).ok();
@@ -146,7 +147,7 @@ fn notes(study: &Study, catalogue: &Catalogue) -> Vec<String> {
     }
     if study.design.robot.physical_limits.is_some() {
         notes.push(
-            "Physical limits are not looked at: singular configurations beyond them are listed too."
+            "Starts lie inside the physical limits; singular configurations beyond them are listed too."
                 .into(),
         );
     }
