@@ -13,6 +13,7 @@ use std::path::Path;
 
 mod manifolds;
 mod odd_input;
+mod singular;
 mod spatial;
 
 const BOTH: [Format; 2] = [Format::Png, Format::Svg];

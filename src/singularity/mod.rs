@@ -12,6 +12,7 @@
 mod branches;
 mod catalogue;
 mod comparison;
+mod connected;
 mod decomposition;
 mod descent;
 mod dexterity;
