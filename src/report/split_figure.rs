@@ -84,7 +84,10 @@ impl Figure for SplitFigure {
                 x: [-180.0, 180.0],
                 y: [-180.0, 180.0],
             };
-            let text = format!("{}: {:.2} rad", part.title, part.size);
+            let text = match part.size.is_finite() {
+                true => format!("{}: {:.2} rad", part.title, part.size),
+                false => part.title.clone(),
+            };
             Label::new(&text, SMALL).bold().draw_within(
                 canvas,
                 [panel.left, panel.top - 5.0],
