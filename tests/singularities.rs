@@ -212,6 +212,25 @@ fn planar_arms_are_singular_in_line() {
     );
 }
 
+/// With unit links three of the four families lie at |x| = 1, on one curve: they are one singularity.
+#[test]
+fn self_motion_joins_singular_configurations() {
+    let mut search = search(&arms::planar(&[1.0; 3]), TaskSpace::PlanarPosition);
+    let settings = SingularitySettings::default();
+    let mut found = find_singularities(&search.arm(), &[Arc::FULL; 3], &settings, 1);
+    assert_eq!(found.singularities.len(), 4);
+    let hits: usize = found.singularities.iter().map(|s| s.hits).sum();
+    found.merge_self_motion(&mut search, 1);
+    assert_eq!((found.singularities.len(), found.families.len()), (2, 2));
+    assert_eq!(
+        found.singularities.iter().map(|s| s.hits).sum::<usize>(),
+        hits
+    );
+    for singularity in &found.singularities {
+        assert!(singularity.family < 2);
+    }
+}
+
 /// At |x| = 1 the curve of the arm with unit links meets itself in three nodes, all configurations
 /// with the links in line.
 #[test]

@@ -23,6 +23,7 @@ mod location;
 mod pareto;
 mod ranges;
 mod refine;
+mod same_motion;
 mod split;
 mod stratum;
 mod surface;

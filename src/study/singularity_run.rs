@@ -41,10 +41,13 @@ pub(super) fn run(
         chain: &chain,
         task: study.task,
     };
-    let catalogue = find_singularities(&arm, &physical, &search.settings(), study.seed);
+    let mut catalogue = find_singularities(&arm, &physical, &search.settings(), study.seed);
     progress.update(1, 3, f64::NAN, "tracing manifolds beside one of them");
     // With another degree of redundancy there are no curves to show.
     let mut locations = location_search(study).ok();
+    if let Some(search) = &mut locations {
+        catalogue.merge_self_motion(search, study.seed);
+    }
     let split = locations
         .as_mut()
         .and_then(|search| find_split(search, &catalogue, BESIDE, study.seed));
