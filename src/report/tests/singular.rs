@@ -7,6 +7,7 @@ use crate::report::{
     SingularityFigure, SizeSample, SplitFigure, SplitPanel, figure_svg,
 };
 use nalgebra::{Isometry3, Vector3};
+use std::f64::consts::PI;
 
 fn assert_draws(figure: &dyn Figure) {
     let svg = figure_svg(figure).expect("a drawing");
@@ -38,7 +39,7 @@ fn projections_and_splits() {
             let figure = ProjectionsFigure {
                 curves: &curves,
                 nodes: &[
-                    (vec![3.14159, 0.0, -3.14159], 1),
+                    (vec![PI, 0.0, -PI], 1),
                     (vec![f64::NAN; 3], 2),
                     (vec![], 9),
                 ],
