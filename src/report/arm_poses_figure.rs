@@ -99,6 +99,62 @@ impl ArmPosesFigure {
         }
         best.1
     }
+
+    fn draw_shadows(&self, canvas: &mut Canvas, space: &Space) {
+        for pose in &self.poses {
+            let floor = |p: &Vector3<f64>| space.at(&space.on_floor(p));
+            let path: Vec<Point> = pose.corners.iter().map(floor).collect();
+            canvas.stroke(&path, 1.6, translucent(GREY, 0.3));
+        }
+    }
+
+    /// From the farthest to the nearest configuration.
+    fn draw_arms(&self, canvas: &mut Canvas, space: &Space) {
+        let mut order: Vec<usize> = (0..self.poses.len()).collect();
+        let nearness = |k: &usize| {
+            let corners = &self.poses[*k].corners;
+            let sum: f64 = corners.iter().map(|p| space.view.nearness(p)).sum();
+            sum / corners.len().max(1) as f64
+        };
+        order.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
+        for k in order {
+            let (pose, colour) = (&self.poses[k], COLOURS[k % COLOURS.len()]);
+            let path = space.path(&pose.corners);
+            canvas.stroke(&path, 3.4, WHITE);
+            canvas.stroke(&path, 2.2, colour);
+            for at in &path {
+                canvas.disc(*at, 2.5, colour);
+                canvas.disc(*at, 1.4, WHITE);
+            }
+        }
+    }
+
+    /// The tool's frame wherever it is, once, and the base.
+    fn draw_frames(&self, canvas: &mut Canvas, space: &Space) {
+        let mut named: Vec<Point> = Vec::new();
+        for pose in &self.poses {
+            let origin = pose.tool.translation.vector;
+            let at = space.at(&origin);
+            let is_new = |other: &Point| (other[0] - at[0]).hypot(other[1] - at[1]) > 2.0;
+            if !named.iter().all(is_new) {
+                continue;
+            }
+            named.push(at);
+            let length = 17.0 / space.scale;
+            for (axis, colour) in [VERMILLION, GREEN, BLUE].into_iter().enumerate() {
+                let tip = origin + pose.tool.rotation * Vector3::ith(axis, length);
+                for shape in arrow([at, space.at(&tip)], colour) {
+                    draw_shape(canvas, shape);
+                }
+            }
+            centred(canvas, "tool", SMALL, [at[0] + 12.0, at[1] - 9.0]);
+        }
+        let base = space.at(&Vector3::zeros());
+        let foot = space.at(&space.on_floor(&Vector3::zeros()));
+        dashed(canvas, base, foot, 0.5, GREY);
+        canvas.disc(base, 3.0, INK);
+        centred(canvas, "base", SMALL, [base[0] + 13.0, base[1] + 6.0]);
+    }
 }
 
 impl Figure for ArmPosesFigure {
@@ -133,60 +189,9 @@ impl Figure for ArmPosesFigure {
         );
         let (space, _) = self.place();
         space.draw_axes(canvas);
-        for pose in &self.poses {
-            let floor: Vec<Point> = pose
-                .corners
-                .iter()
-                .map(|p| space.at(&space.on_floor(p)))
-                .collect();
-            canvas.stroke(&floor, 1.6, translucent(GREY, 0.3));
-        }
-        // From the farthest to the nearest configuration.
-        let mut order: Vec<usize> = (0..self.poses.len()).collect();
-        let nearness = |k: &usize| {
-            let corners = &self.poses[*k].corners;
-            let sum: f64 = corners.iter().map(|p| space.view.nearness(p)).sum();
-            sum / corners.len().max(1) as f64
-        };
-        order.sort_by(|a, b| nearness(a).total_cmp(&nearness(b)));
-        for k in order {
-            let (pose, colour) = (&self.poses[k], COLOURS[k % COLOURS.len()]);
-            let path = space.path(&pose.corners);
-            canvas.stroke(&path, 3.4, WHITE);
-            canvas.stroke(&path, 2.2, colour);
-            for at in &path {
-                canvas.disc(*at, 2.5, colour);
-                canvas.disc(*at, 1.4, WHITE);
-            }
-        }
-        let mut named: Vec<Point> = Vec::new();
-        for pose in &self.poses {
-            let origin = pose.tool.translation.vector;
-            let at = space.at(&origin);
-            let is_new = |other: &Point| (other[0] - at[0]).hypot(other[1] - at[1]) > 2.0;
-            if !named.iter().all(is_new) {
-                continue;
-            }
-            named.push(at);
-            let length = 17.0 / space.scale;
-            for (axis, colour) in [VERMILLION, GREEN, BLUE].into_iter().enumerate() {
-                let tip = origin + pose.tool.rotation * Vector3::ith(axis, length);
-                for shape in arrow([at, space.at(&tip)], colour) {
-                    draw_shape(canvas, shape);
-                }
-            }
-            centred(canvas, "tool", SMALL, [at[0] + 12.0, at[1] - 9.0]);
-        }
-        let base = space.at(&Vector3::zeros());
-        dashed(
-            canvas,
-            base,
-            space.at(&space.on_floor(&Vector3::zeros())),
-            0.5,
-            GREY,
-        );
-        canvas.disc(base, 3.0, INK);
-        centred(canvas, "base", SMALL, [base[0] + 13.0, base[1] + 6.0]);
+        self.draw_shadows(canvas, &space);
+        self.draw_arms(canvas, &space);
+        self.draw_frames(canvas, &space);
     }
 
     fn table(&self) -> Table {

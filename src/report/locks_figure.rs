@@ -66,6 +66,44 @@ impl LocksFigure {
     }
 }
 
+/// The row of one joint: its name, its locks and how many are survived.
+fn draw_row(canvas: &mut Canvas, panel: &Panel, y: f64, goal: &GoalLocks, joint: usize) {
+    let own: Vec<&LockMark> = goal
+        .locks
+        .iter()
+        .filter(|lock| lock.joint == joint)
+        .collect();
+    let base = y + 0.5 * ROW + HALF_CAPITAL * SMALL;
+    let symbol = joint_symbol(joint);
+    Label::new(&symbol, SMALL)
+        .align(HPos::Right)
+        .draw(canvas, [NAMES - 4.0, base]);
+    let last = own.len().saturating_sub(1);
+    for (k, lock) in own.iter().enumerate() {
+        // Each lock stands for the part of the way nearest to it.
+        let from = if k == 0 {
+            0.0
+        } else {
+            0.5 * (own[k - 1].share + lock.share)
+        };
+        let to = if k == last {
+            1.0
+        } else {
+            0.5 * (own[k + 1].share + lock.share)
+        };
+        let [left, right] = [from, to].map(|share| panel.at(100.0 * share, 0.0)[0]);
+        let colour = if lock.is_reached { BLUE } else { VERMILLION };
+        canvas.fill(
+            &rectangle(left, y + 1.5, right - left + 0.1, ROW - 3.0),
+            colour,
+        );
+    }
+    let reached = own.iter().filter(|lock| lock.is_reached).count();
+    let text = format!("{:.0} %", 100.0 * reached as f64 / own.len().max(1) as f64);
+    let at = [panel.left + panel.width + 30.0, base];
+    Label::new(&text, SMALL).align(HPos::Right).draw(canvas, at);
+}
+
 impl Figure for LocksFigure {
     fn name(&self) -> &'static str {
         "locks"
@@ -110,40 +148,7 @@ impl Figure for LocksFigure {
             );
             y += GROUP;
             for joint in Self::joints(goal) {
-                let own: Vec<&LockMark> = goal
-                    .locks
-                    .iter()
-                    .filter(|lock| lock.joint == joint)
-                    .collect();
-                let base = y + 0.5 * ROW + HALF_CAPITAL * SMALL;
-                let symbol = joint_symbol(joint);
-                Label::new(&symbol, SMALL)
-                    .align(HPos::Right)
-                    .draw(canvas, [NAMES - 4.0, base]);
-                let last = own.len().saturating_sub(1);
-                for (k, lock) in own.iter().enumerate() {
-                    // Each lock stands for the part of the way nearest to it.
-                    let from = if k == 0 {
-                        0.0
-                    } else {
-                        0.5 * (own[k - 1].share + lock.share)
-                    };
-                    let to = if k == last {
-                        1.0
-                    } else {
-                        0.5 * (own[k + 1].share + lock.share)
-                    };
-                    let [left, right] = [from, to].map(|share| panel.at(100.0 * share, 0.0)[0]);
-                    let colour = if lock.is_reached { BLUE } else { VERMILLION };
-                    canvas.fill(
-                        &rectangle(left, y + 1.5, right - left + 0.1, ROW - 3.0),
-                        colour,
-                    );
-                }
-                let reached = own.iter().filter(|lock| lock.is_reached).count();
-                let text = format!("{:.0} %", 100.0 * reached as f64 / own.len().max(1) as f64);
-                let at = [panel.left + panel.width + 30.0, base];
-                Label::new(&text, SMALL).align(HPos::Right).draw(canvas, at);
+                draw_row(canvas, &panel, y, goal, joint);
                 y += ROW;
             }
         }

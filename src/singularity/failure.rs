@@ -200,16 +200,7 @@ impl Trial<'_> {
     fn run(&self, share: f64, seed: u64, item: u64) -> Lock {
         let angle = self.theta[self.joint];
         let exists = contains(&self.location.ranges[self.joint], angle);
-        let mut starts = vec![self.theta.clone()];
-        starts.extend(self.nearest_on_manifolds());
-        let mut rng = stream(seed, item);
-        for _ in 0..self.settings.random_starts {
-            let physical = self.search.physical().iter();
-            let draw = physical.map(|arc| arc.start() + arc.width() * rng.random::<f64>());
-            let mut theta: Vec<f64> = draw.collect();
-            theta[self.joint] = angle;
-            starts.push(theta);
-        }
+        let starts = self.starts(seed, item);
         let arm = self.search.arm();
         let ik = Ik {
             arm: &arm,
@@ -217,23 +208,12 @@ impl Trial<'_> {
             physical: self.search.physical(),
             locked: self.joint,
         };
-        let mut best: Option<(f64, Vec<f64>)> = None;
+        // Where no start reaches the goal, the orientation comes first.
+        let mut best = None;
         for weight in [1.0, ORIENTATION_FIRST] {
-            for start in &starts {
-                let (score, theta) = ik.solve(start, weight);
-                if best.as_ref().is_none_or(|(least, _)| score < *least) {
-                    best = Some((score, theta));
-                }
-                if ik.is_reached(&best) {
-                    break;
-                }
-            }
+            best = ik.best(&starts, weight);
             if ik.is_reached(&best) {
                 break;
-            }
-            if weight == 1.0 {
-                // Scores of the two weights cannot be compared.
-                best = None;
             }
         }
         let theta = best.map_or(self.theta.clone(), |(_, theta)| theta);
@@ -250,6 +230,21 @@ impl Trial<'_> {
             offset,
             theta,
         }
+    }
+
+    /// Starts of inverse kinematics: where the joint locked, near every manifold of the goal, random.
+    fn starts(&self, seed: u64, item: u64) -> Vec<Vec<f64>> {
+        let mut starts = vec![self.theta.clone()];
+        starts.extend(self.nearest_on_manifolds());
+        let mut rng = stream(seed, item);
+        for _ in 0..self.settings.random_starts {
+            let physical = self.search.physical().iter();
+            let draw = physical.map(|arc| arc.start() + arc.width() * rng.random::<f64>());
+            let mut theta: Vec<f64> = draw.collect();
+            theta[self.joint] = self.theta[self.joint];
+            starts.push(theta);
+        }
+        starts
     }
 
     /// The configurations of the goal whose locked joint is nearest to where it locked, one for
@@ -301,6 +296,21 @@ impl Ik<'_> {
             _ => 0.0,
         };
         [[p.x, p.y, p.z], [angle, 0.0, 0.0]]
+    }
+
+    /// The end with the least error over all starts, the first that reaches the goal.
+    fn best(&self, starts: &[Vec<f64>], weight: f64) -> Option<(f64, Vec<f64>)> {
+        let mut best: Option<(f64, Vec<f64>)> = None;
+        for start in starts {
+            let (score, theta) = self.solve(start, weight);
+            if best.as_ref().is_none_or(|(least, _)| score < *least) {
+                best = Some((score, theta));
+            }
+            if self.is_reached(&best) {
+                break;
+            }
+        }
+        best
     }
 
     fn is_reached(&self, best: &Option<(f64, Vec<f64>)>) -> bool {

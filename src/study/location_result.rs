@@ -59,6 +59,18 @@ pub(super) fn location_json(location: &Location, study: &Study, physical: &[Arc]
     value["limiting_joints"] = short
         .map(|(joint, short)| json!({ "joint": joint + 1, "missing_rad": short }))
         .collect();
+    value["connected_sets"] = connected_sets(location, &joints);
+    value["manifolds"] = location.manifolds.iter().map(manifold_json).collect();
+    put_singular(&mut value, location, &joints, rank);
+    value["completeness"] = match location.completeness {
+        Completeness::Proved => json!({ "kind": "proved" }),
+        Completeness::Evidence(missed) => json!({ "kind": "evidence", "missed": missed }),
+        Completeness::Unknown => json!({ "kind": "unknown" }),
+    };
+    value
+}
+
+fn connected_sets(location: &Location, joints: &Joints) -> Value {
     let sets = location.sets.iter().map(|set| {
         let mut value = json!({
             "size": set.size,
@@ -68,16 +80,19 @@ pub(super) fn location_json(location: &Location, study: &Study, physical: &[Arc]
         joints.put_ranges(&mut value, &set.ranges);
         value
     });
-    value["connected_sets"] = sets.collect();
-    let manifold = |manifold: &SelfMotionManifold| {
-        json!({
-            "status": manifold.status,
-            "open": is_open(manifold),
-            "length": manifold.length,
-            "winding": manifold.winding,
-        })
-    };
-    value["manifolds"] = location.manifolds.iter().map(manifold).collect();
+    sets.collect()
+}
+
+fn manifold_json(manifold: &SelfMotionManifold) -> Value {
+    json!({
+        "status": manifold.status,
+        "open": is_open(manifold),
+        "length": manifold.length,
+        "winding": manifold.winding,
+    })
+}
+
+fn put_singular(target: &mut Value, location: &Location, joints: &Joints, rank: usize) {
     let nodes = location.nodes.iter().map(|node| {
         let mut value = json!({
             "rank": rank - node.loss,
@@ -87,20 +102,14 @@ pub(super) fn location_json(location: &Location, study: &Study, physical: &[Arc]
         joints.put_theta(&mut value, &node.theta);
         value
     });
-    value["singular_configurations"] = nodes.collect();
+    target["singular_configurations"] = nodes.collect();
     let surfaces = location.surfaces.iter().map(|surface| {
         let mut value = json!({ "rank": rank - surface.loss, "dimension": surface.dimension });
         joints.put_theta(&mut value, &surface.theta);
         joints.put_ranges(&mut value, &surface.ranges);
         value
     });
-    value["singular_surfaces"] = surfaces.collect();
-    value["completeness"] = match location.completeness {
-        Completeness::Proved => json!({ "kind": "proved" }),
-        Completeness::Evidence(missed) => json!({ "kind": "evidence", "missed": missed }),
-        Completeness::Unknown => json!({ "kind": "unknown" }),
-    };
-    value
+    target["singular_surfaces"] = surfaces.collect();
 }
 
 /// Whether a closed curve winds round the torus of joint angles: it is then open in the sense of

@@ -38,11 +38,7 @@ fn projections_and_splits() {
         for colour in [1, 3, 7] {
             let figure = ProjectionsFigure {
                 curves: &curves,
-                nodes: &[
-                    (vec![PI, 0.0, -PI], 1),
-                    (vec![f64::NAN; 3], 2),
-                    (vec![], 9),
-                ],
+                nodes: &[(vec![PI, 0.0, -PI], 1), (vec![f64::NAN; 3], 2), (vec![], 9)],
                 joint_count: 3,
                 rank: 2,
                 panels: vec![[1, 2, 3], [1, 2, 9]],
