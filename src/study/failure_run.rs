@@ -152,8 +152,8 @@ impl FailureFinding<'_> {
                 .count();
             if odd > 0 {
                 notes.push(format!(
-                    "Goal {}: for {odd} locks inverse kinematics and the joint ranges of the \
-                     goal's manifolds disagree; the goal is counted as reached only where inverse \
+                    "Goal {}: inverse kinematics and the joint ranges of the goal's manifolds \
+                     disagree on {odd} of the locks; the goal is counted as reached only where inverse \
                      kinematics reached it.",
                     goal.name
                 ));
