@@ -5,13 +5,17 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every module with all it may import from, in order: a module may only name earlier ones.
-const MODULES: [(&str, &[&str]); 13] = [
+const MODULES: [(&str, &[&str]); 14] = [
     ("angle", &[]),
     ("sampling", &[]),
     ("diagnostic", &[]),
     ("design", &["angle", "sampling", "diagnostic"]),
     ("kinematics", &["design"]),
     ("manifold", &["angle", "sampling", "design", "kinematics"]),
+    (
+        "singularity",
+        &["angle", "sampling", "design", "kinematics", "manifold"],
+    ),
     (
         "workspace",
         &["angle", "sampling", "design", "kinematics", "manifold"],
@@ -42,6 +46,7 @@ const MODULES: [(&str, &[&str]); 13] = [
             "design",
             "kinematics",
             "manifold",
+            "singularity",
             "workspace",
             "objective",
             "surrogate",

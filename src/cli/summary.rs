@@ -31,6 +31,7 @@ pub(super) fn summary(result: &Value, out: &Path) -> String {
         let _ = writeln!(text, "  {:<25} {:.3} %", "share", 100.0 * share);
     }
     pose(result, &mut text);
+    singular(result, &mut text);
     let slides = limits(&result["limits_m"]);
     let kind = if slides.is_empty() { "" } else { "revolute " };
     for (joint, limits) in limits(&result["limits_deg"]).iter().enumerate() {
@@ -88,6 +89,34 @@ fn pose(result: &Value, text: &mut String) {
     if let Some(answer) = result["fault_tolerant"].as_bool() {
         let answer = if answer { "yes" } else { "no" };
         line("fault tolerant", answer.to_owned());
+    }
+}
+
+/// What a study about singular configurations found.
+fn singular(result: &Value, text: &mut String) {
+    let mut line = |label: &str, value: String| {
+        let _ = writeln!(text, "  {label:<25} {value}");
+    };
+    let count = |key: &str| result[key].as_array().map(Vec::len);
+    if let Some(found) = count("singularities") {
+        line("singular configurations", found.to_string());
+        line("families", count("families").unwrap_or(0).to_string());
+    }
+    if let Some(size) = result["largest_size"].as_f64() {
+        line("largest location", format!("{size:.6} rad"));
+        let most = result["most_possible"].as_f64().unwrap_or(f64::NAN);
+        line("largest possible", format!("{most:.6} rad"));
+        let least = result["smallest_size"].as_f64().unwrap_or(f64::NAN);
+        line("smallest location", format!("{least:.6} rad"));
+    }
+    for goal in result["goals"].as_array().into_iter().flatten() {
+        let name = goal["name"].as_str().unwrap_or("?");
+        let success = 100.0 * goal["success"].as_f64().unwrap_or(f64::NAN);
+        let worst = goal["worst_position_error_m"].as_f64().unwrap_or(f64::NAN);
+        line(
+            name,
+            format!("reached after {success:.1} % of locks, worst {worst:.4} m off"),
+        );
     }
 }
 

@@ -213,7 +213,7 @@ impl ChainJoint {
     }
 
     /// The joint's motion at the internal variable `value`, with the link behind it.
-    fn motion(&self, value: f64) -> Isometry3<f64> {
+    pub(super) fn motion(&self, value: f64) -> Isometry3<f64> {
         let turn = about_z(self.offset + self.turn * value);
         let slide = Translation3::new(0.0, 0.0, self.slide * value);
         Isometry3::from_parts(slide, turn.into()) * self.link()

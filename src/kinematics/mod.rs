@@ -4,6 +4,7 @@
 //! [`Chain`] is the canonical form whose [`Kernel`] the inner loops evaluate.
 
 mod chain;
+mod derivative;
 mod extent;
 mod fixed;
 mod forward;
@@ -15,6 +16,7 @@ mod posture;
 mod sine;
 
 pub use chain::{Chain, ChainJoint, JointScale, joint_scales};
+pub use derivative::Differential;
 pub use extent::{Extent, workspace_extent};
 pub use fixed::{fixed_transforms, joint_motion};
 pub use forward::{joint_frames, reach_bound, tool_frame};

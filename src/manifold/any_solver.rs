@@ -66,6 +66,19 @@ impl AnySolver {
         }
     }
 
+    /// The manifold through the configuration `theta` (see [`Solver::trace`]).
+    pub fn trace(
+        &self,
+        goal: &Goal<f64>,
+        theta: &[f64],
+        settings: &SearchSettings,
+    ) -> Option<SelfMotionManifold> {
+        each!(self, solver => {
+            let curve = solver.trace(goal, theta.try_into().ok()?, settings)?;
+            Some(SelfMotionManifold::from_curve(&curve, 0))
+        })
+    }
+
     /// Rank of the Jacobian at a random configuration; below m, the task is degenerate.
     pub fn rank(&self) -> usize {
         each!(self, solver => solver.rank())

@@ -16,6 +16,9 @@ const FIRST_STEP: f64 = 0.02;
 /// Steps below which the configuration counts as singular.
 const LEAST_STEP: f64 = 1e-7;
 
+/// Singular configurations crossed after which a march ends: it then creeps along a set of them.
+const MOST_CROSSINGS: usize = 64;
+
 /// Why a march ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Ending {
@@ -74,6 +77,9 @@ pub(super) async fn march<const N: usize, const M: usize>(
                 return Ending::Singular;
             }
             curve.crossings.push(vertices);
+            if curve.crossings.len() > MOST_CROSSINGS {
+                return Ending::TooLong;
+            }
         }
         vertices += 1;
         curve.push(march.point, march.tangents[0]);

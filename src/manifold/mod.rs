@@ -28,6 +28,7 @@ mod sliced;
 mod solver;
 mod source;
 mod trace;
+mod within;
 
 pub use bounds::physical_arcs;
 pub use curve::CurveStatus;
@@ -38,3 +39,4 @@ pub use sliced::Faces;
 pub use solver::SearchSettings;
 pub use source::{CurveRef, CurveSource, MOST_REDUNDANT};
 pub use trace::TraceSettings;
+pub use within::{Run, runs_inside};

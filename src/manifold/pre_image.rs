@@ -213,6 +213,19 @@ impl PreImageSearch {
         }
     }
 
+    /// The self-motion manifold of the tool pose `tool` through `theta`, n internal joint variables
+    /// that hold it nearly; `None` if Newton steps from there do not lead to such a configuration.
+    ///
+    /// Like every manifold it is followed straight through singular configurations, in the
+    /// direction closest to the incoming one [S1 Algorithm 2].
+    pub fn trace(&self, tool: &Isometry3<f64>, theta: &[f64]) -> Option<SelfMotionManifold> {
+        if !is_finite(tool) {
+            return None;
+        }
+        let goal = Goal::new(&self.chain, tool);
+        self.solver.trace(&goal, theta, &self.settings)
+    }
+
     fn nothing(&self, completeness: Completeness) -> PreImage {
         PreImage {
             joints: self.chain.len(),

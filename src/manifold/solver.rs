@@ -1,9 +1,11 @@
 //! All self-motion manifolds of one task point, for robots with one degree of redundancy.
 
+use super::correct::correct;
+use super::curve::{Curve, wrapped};
 use super::desk::Desk;
 use super::findings::Findings;
 use super::prober::{Alone, at_once};
-use super::trace::TraceSettings;
+use super::trace::{TraceSettings, trace};
 use crate::kinematics::{Goal, Kernel};
 use crate::sampling::stream;
 use nalgebra::{DMatrix, SMatrix};
@@ -117,6 +119,29 @@ impl<const N: usize, const M: usize> Solver<N, M> {
             goal,
         };
         at_once(self.findings[0].search(&prober, goal, settings, rng));
+    }
+
+    /// The curve through `theta`, which is first moved onto the pre-image; `None` if Newton steps
+    /// do not lead there, as next to singular configurations.
+    pub fn trace(
+        &self,
+        goal: &Goal<f64>,
+        theta: &[f64; N],
+        settings: &SearchSettings,
+    ) -> Option<Curve<N>> {
+        let prober = Alone {
+            kernel: &self.kernel,
+            goal,
+        };
+        let (point, _) = at_once(correct(&prober, theta))?;
+        let mut curve = Curve::new();
+        at_once(trace(
+            &prober,
+            &wrapped(&point),
+            &settings.trace,
+            &mut curve,
+        ));
+        Some(curve)
     }
 
     /// Finds all curves of many goals, each with its own random stream, as [`Solver::solve`] would;

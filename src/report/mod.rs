@@ -5,31 +5,36 @@
 //! puts on a PNG (1600 pixels wide for one column of a paper) or an SVG, and the table behind it as CSV. Files are written
 //! whole or not at all, and the same input gives the same bytes.
 //!
-//! [`write_report`], for studies of one pose [`write_manifold_report`] and for surrogates
-//! [`write_surrogate_report`] write everything; [`write_figure`], [`write_json`] and [`write_text`]
-//! write single files.
+//! [`write_report`], for studies of one pose [`write_manifold_report`], of singular configurations
+//! [`write_finding_report`] and for surrogates [`write_surrogate_report`] write everything;
+//! [`write_figure`], [`write_json`] and [`write_text`] write single files.
 
 mod agreement;
 mod angle_axes;
 mod angle_density;
 mod arm;
+mod arm_poses_figure;
 mod axonometry;
 mod calibration;
 mod canvas;
 mod colour_bar;
 mod convergence;
+mod distribution_figure;
 mod error;
 mod figure;
 mod figure_of;
 mod filter_figure;
+mod finding_report;
 mod free_place;
 mod half_plane_figure;
 mod html;
 mod joint_bars;
 mod joint_mark;
+mod joint_ranges_figure;
 mod label;
 mod limits_figure;
 mod link_rod;
+mod locks_figure;
 mod manifold;
 mod manifold_figure;
 mod manifold_page;
@@ -38,11 +43,13 @@ mod manifold_view;
 mod number;
 mod outline;
 mod panel;
+mod pareto_figure;
 mod point_cloud;
 mod points;
 mod polar;
 mod predicted_workspaces;
 mod projection;
+mod projections_figure;
 mod render;
 mod result_files;
 mod ring_picture;
@@ -56,10 +63,12 @@ mod sections;
 mod sensitivity;
 mod share_scale;
 mod shares;
+mod singularity_figure;
 mod size_scatter;
 mod sizes_figure;
 mod slices;
 mod spatial_figure;
+mod split_figure;
 mod style;
 mod subscript;
 mod surrogate_page;
@@ -73,32 +82,41 @@ mod workspace_figure;
 mod write;
 
 pub use angle_density::AngleDensity;
+pub use arm_poses_figure::{ArmPose, ArmPosesFigure};
 pub use calibration::{Calibration, CalibrationBin, CalibrationCurve};
 pub use canvas::{Canvas, Size};
 pub use convergence::{Convergence, ConvergencePoint};
+pub use distribution_figure::{DistributionFigure, SizeSample};
 pub use error::ReportError;
 pub use figure::{Figure, Format, figure_png, figure_svg, write_figure};
 pub use figure_of::FigureOf;
 pub use filter_figure::FilterFigure;
+pub use finding_report::{FindingReport, Section, write_finding_report};
 pub use half_plane_figure::HalfPlaneFigure;
 pub use html::{InlineFigure, page};
+pub use joint_ranges_figure::JointRangesFigure;
 pub use limits_figure::LimitsFigure;
+pub use locks_figure::{GoalLocks, LockMark, LocksFigure};
 pub use manifold::{CriticalPoint, ManifoldCurve};
 pub use manifold_figure::ManifoldFigure;
 pub use manifold_report::{
     JointRow, ManifoldReport, ManifoldRow, PoseVerdict, write_manifold_report,
 };
 pub use manifold_view::ManifoldFigure3d;
-pub use number::{degrees, estimate, percentage, plain, unit, with_error};
+pub use number::{degrees, estimate, joint_symbol, percentage, plain, unit, with_error};
+pub use pareto_figure::{ParetoFigure, ParetoPoint};
 pub use points::{write_curves, write_points};
 pub use predicted_workspaces::{PredictedWorkspaces, WorkspaceCase};
+pub use projections_figure::ProjectionsFigure;
 pub use result_files::{write_bytes, write_json, write_text};
 pub use robot_3d::{JointMark, SpatialRobotFigure};
 pub use robot_figure::RobotFigure;
 pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};
+pub use singularity_figure::{SingularPoint, SingularityFigure};
 pub use size_scatter::{SizeScatter, SizeSeries};
 pub use sizes_figure::SizesFigure;
 pub use spatial_figure::SpatialWorkspaceFigure;
+pub use split_figure::{SplitFigure, SplitPanel};
 pub use surrogate_report::{ReportTable, SurrogateReport, write_surrogate_report};
 pub use table::Table;
 pub use training_curve::{TrainingCurve, TrainingEpoch};

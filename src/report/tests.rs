@@ -13,6 +13,7 @@ use std::path::Path;
 
 mod manifolds;
 mod odd_input;
+mod singular;
 mod spatial;
 mod surrogates;
 

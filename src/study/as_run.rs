@@ -5,6 +5,7 @@ use super::settings::{
     CoordinateAscent, DegreeLimits, Estimator, Genetic, ManifoldSearch, OptimiserSettings, Pose,
     Question, ReportSettings, Study,
 };
+use super::singular_settings::{FailureStudy, LargestSearch, SingularitySearch};
 use super::surrogate_settings::{SurrogateSettings, Train, Training, Validate};
 use crate::design::TaskSpace;
 use crate::surrogate::Draw;
@@ -24,6 +25,7 @@ impl Study {
 }
 
 #[derive(Serialize)]
+#[serde(rename_all = "kebab-case")]
 struct AsRun<'a> {
     kind: &'static str,
     title: Option<&'a str>,
@@ -41,6 +43,9 @@ struct AsRun<'a> {
     surrogate: Option<&'a SurrogateSettings>,
     training: Option<&'a Training>,
     validate: Option<ValidateTable>,
+    singularities: Option<&'a SingularitySearch>,
+    largest_manifold: Option<&'a LargestSearch>,
+    failure_experiment: Option<&'a FailureStudy>,
     report: &'a ReportSettings,
 }
 
@@ -132,6 +137,9 @@ impl<'a> AsRun<'a> {
             surrogate: None,
             training: None,
             validate: None,
+            singularities: None,
+            largest_manifold: None,
+            failure_experiment: None,
             report: &study.report,
         };
         match &study.question {
@@ -162,6 +170,19 @@ impl<'a> AsRun<'a> {
             Question::Validate(validate) => {
                 as_run.estimator = None;
                 as_run.validate = Some(ValidateTable::new(validate, folder));
+            }
+            Question::Singularities(search) => {
+                as_run.estimator = None;
+                as_run.singularities = Some(search);
+            }
+            Question::LargestManifold(largest) => {
+                as_run.estimator = None;
+                as_run.singularities = Some(&largest.singularities);
+                as_run.largest_manifold = Some(&largest.largest);
+            }
+            Question::FailureExperiment(study) => {
+                as_run.estimator = None;
+                as_run.failure_experiment = Some(study);
             }
         }
         as_run
@@ -287,12 +308,30 @@ mod tests {
         [task]\nspace = 'planar-position'\n[pose]\nposition = [1, 0.5]\n\
         [manifolds]\nresidual = 1e-9\n";
 
+    const SINGULARITIES: &str = "kind = 'singularities'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[singularities]\nstarts = 7\n";
+    const LARGEST: &str = "kind = 'largest-manifold'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[largest-manifold]\ncomparison = 0\n";
+    const FAILURE: &str = "kind = 'failure-experiment'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[failure-experiment]\nstart_deg = [0, 0.1, 1e-3]\n\
+        goals = [ { name = 'A \"b\"', theta_deg = [1, 2, 3] }, { name = 'C', theta_deg = [0, 0, 0] } ]\n";
+
     #[test]
     fn the_study_as_run_means_the_same_from_its_own_folder() {
         let dir = tempfile::tempdir().unwrap();
         let robot = dir.path().join("r.toml");
         std::fs::write(robot, "name = 'r'\nlinks = [1, 1, 1]").unwrap();
-        for text in [ESTIMATE, ASCENT, GENETIC, LATTICE, GRID, MANIFOLDS] {
+        for text in [
+            ESTIMATE,
+            ASCENT,
+            GENETIC,
+            LATTICE,
+            GRID,
+            MANIFOLDS,
+            SINGULARITIES,
+            LARGEST,
+            FAILURE,
+        ] {
             let written = dir.path().join("study.toml");
             std::fs::write(&written, text).unwrap();
             let study = Study::load(&written).unwrap();

@@ -7,6 +7,8 @@ use super::hybrid_table::{self, HybridTable};
 use super::pose_table::{self, ManifoldsTable, PoseTable};
 use super::search::{self, OptimiserTable, SearchTable};
 use super::settings::{EstimatorMethod, FigureFormat};
+use super::singular_settings::{LargestSearch, SingularitySearch};
+use super::singular_table::{self, FailureTable};
 use super::surrogate_table::{self, SurrogateEstimatorTable, TrainTable, ValidateTable};
 use crate::design::TaskSpace;
 use crate::diagnostic::{Document, InputError, Item, Place, Source, Table, nearest};
@@ -29,18 +31,23 @@ const KEYS: &[&str] = &[
     "surrogate",
     "training",
     "validate",
+    "singularities",
+    "largest-manifold",
+    "failure-experiment",
     "report",
 ];
 
-/// Kinds of studies that exist or are planned; the first five are served.
-const KINDS: [&str; 7] = [
-    "estimate",
-    "optimise",
-    "manifolds",
-    "train",
-    "validate",
-    "singularities",
-    "redundancy",
+/// Kinds of studies that exist, and planned ones.
+const KINDS: [(&str, Option<Kind>); 9] = [
+    ("estimate", Some(Kind::Estimate)),
+    ("optimise", Some(Kind::Optimise)),
+    ("manifolds", Some(Kind::Manifolds)),
+    ("singularities", Some(Kind::Singularities)),
+    ("largest-manifold", Some(Kind::LargestManifold)),
+    ("failure-experiment", Some(Kind::FailureExperiment)),
+    ("train", Some(Kind::Train)),
+    ("validate", Some(Kind::Validate)),
+    ("redundancy", None),
 ];
 
 /// Largest angle in a file, degrees: ten turns. Beyond, the fraction of a turn loses its digits.
@@ -69,6 +76,9 @@ pub struct StudyFile {
     /// Where the first of `[dataset]`, `[surrogate]` and `[training]` stands.
     pub(super) train_place: Option<Place>,
     pub(super) validate: Option<Item<ValidateTable>>,
+    pub(super) singularities: Option<Item<SingularitySearch>>,
+    pub(super) largest: Option<Item<LargestSearch>>,
+    pub(super) failure: Option<Item<FailureTable>>,
     pub(super) formats: Option<Item<Vec<Item<FigureFormat>>>>,
     pub(super) figures: Option<bool>,
 }
@@ -81,6 +91,9 @@ pub(super) enum Kind {
     Manifolds,
     Train,
     Validate,
+    Singularities,
+    LargestManifold,
+    FailureExperiment,
 }
 
 /// `failures = "any"` or a list of joint numbers from 1.
@@ -173,6 +186,9 @@ fn read(root: &Table) -> Option<StudyFile> {
             .into_iter()
             .find_map(|key| root.key_place(key)),
         validate: surrogate_table::read_validate(root),
+        singularities: singular_table::read_singularities(root),
+        largest: singular_table::read_largest(root),
+        failure: singular_table::read_failure(root),
         formats: report.as_ref().and_then(read_formats),
         figures: report
             .and_then(|table| table.boolean("figures"))
@@ -186,29 +202,27 @@ fn read(root: &Table) -> Option<StudyFile> {
 
 fn read_kind(root: &Table) -> Option<Item<Kind>> {
     let text = root.text("kind")?;
-    let kind = match text.value.as_str() {
-        "estimate" => Kind::Estimate,
-        "optimise" => Kind::Optimise,
-        "manifolds" => Kind::Manifolds,
-        "train" => Kind::Train,
-        "validate" => Kind::Validate,
-        other => {
-            let (message, help) = match nearest(other, &KINDS) {
-                Some(planned) if planned == other => (
-                    "this version does not serve this kind of study",
-                    "ask for an estimate, an optimisation or manifolds".to_owned(),
-                ),
-                Some(planned) => (
-                    "unknown kind of study",
-                    format!("did you mean \"{planned}\"?"),
-                ),
-                None => ("unknown kind of study", String::new()),
-            };
-            let expected = "\"estimate\", \"optimise\", \"manifolds\", \"train\" or \"validate\"";
-            root.problems()
-                .reject(&text.place, message, expected, &help);
-            return None;
-        }
+    let written = text.value.as_str();
+    let known = KINDS.iter().find(|(name, _)| *name == written);
+    let Some(kind) = known.and_then(|(_, kind)| *kind) else {
+        let names = KINDS.map(|(name, _)| name);
+        let served = KINDS.iter().filter(|(_, kind)| kind.is_some());
+        let served: Vec<String> = served.map(|(name, _)| format!("\"{name}\"")).collect();
+        let expected = format!("one of {}", served.join(", "));
+        let (message, help) = match (known, nearest(written, &names)) {
+            (Some(_), _) => (
+                "this version does not serve this kind of study",
+                "ask for one of the kinds that are served".to_owned(),
+            ),
+            (None, Some(meant)) => (
+                "unknown kind of study",
+                format!("did you mean \"{meant}\"?"),
+            ),
+            (None, None) => ("unknown kind of study", String::new()),
+        };
+        root.problems()
+            .reject(&text.place, message, &expected, &help);
+        return None;
     };
     Some(Item {
         value: kind,

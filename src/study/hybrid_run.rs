@@ -63,9 +63,7 @@ pub(super) fn run(
             run.write(&atlas, &estimate.limits, &limits, None)
         }
         Question::Optimise(optimise) => run.optimise(optimise, atlas),
-        Question::Manifolds(_) | Question::Train(_) | Question::Validate(_) => {
-            Err(anyhow::anyhow!("a study of manifolds measures no workspace").into())
-        }
+        _ => Err(anyhow::anyhow!("this kind of study measures no workspace").into()),
     }?;
     run.ready.session.store.remove();
     Ok(result)

@@ -115,7 +115,7 @@ pub(super) fn manifold_report<'p>(
 }
 
 /// A manifold as a line of short straight parts.
-fn drawn(manifold: &SelfMotionManifold) -> ManifoldCurve {
+pub(super) fn drawn(manifold: &SelfMotionManifold) -> ManifoldCurve {
     let mut points = vec![manifold.point(0).to_vec()];
     for index in 0..manifold.vertices().saturating_sub(1) {
         let at = |part: usize| manifold.at(index, part as f64 / PARTS as f64);

@@ -140,13 +140,13 @@ impl ManifoldFinding<'_> {
 }
 
 /// How joint variables are written: revolute joints in degrees, prismatic ones in metres.
-struct Joints {
+pub(super) struct Joints {
     scales: Vec<JointScale>,
-    slides: Vec<bool>,
+    pub slides: Vec<bool>,
 }
 
 impl Joints {
-    fn of(robot: &Robot) -> Joints {
+    pub fn of(robot: &Robot) -> Joints {
         let slides = |joint| robot.joint_kind(joint) == JointKind::Prismatic;
         Joints {
             scales: joint_scales(robot).unwrap_or_default(),
@@ -178,19 +178,19 @@ impl Joints {
         value
     }
 
-    fn configuration(&self, theta: &[f64]) -> Value {
+    pub fn configuration(&self, theta: &[f64]) -> Value {
         let mut value = json!({});
         self.put_theta(&mut value, theta);
         value
     }
 
-    fn put_theta(&self, target: &mut Value, theta: &[f64]) {
+    pub fn put_theta(&self, target: &mut Value, theta: &[f64]) {
         let of = |slides: bool| self.each(slides, |joint| json!(self.outer(joint, theta)));
         self.put(target, "theta", of);
     }
 
     /// Variable of `joint` in the unit of files.
-    fn outer(&self, joint: usize, theta: &[f64]) -> f64 {
+    pub fn outer(&self, joint: usize, theta: &[f64]) -> f64 {
         let value = theta[joint];
         match (self.slides[joint], self.scales.get(joint)) {
             (true, Some(scale)) => scale.outer(value),
@@ -198,7 +198,7 @@ impl Joints {
         }
     }
 
-    fn put_ranges(&self, target: &mut Value, ranges: &[AngleSet]) {
+    pub fn put_ranges(&self, target: &mut Value, ranges: &[AngleSet]) {
         let of = |slides: bool| {
             self.each(slides, |joint| match (slides, self.scales.get(joint)) {
                 (true, Some(scale)) => {

@@ -6,6 +6,7 @@
 
 mod as_run;
 mod checkpoint;
+mod failure_run;
 mod file;
 mod folder;
 mod hybrid_arm;
@@ -14,8 +15,11 @@ mod hybrid_run;
 mod hybrid_sensitivity;
 mod hybrid_settings;
 mod hybrid_table;
+mod largest_result;
+mod largest_run;
 mod limits;
 mod load;
+mod location_result;
 mod manifold_report;
 mod manifold_result;
 mod manifold_run;
@@ -32,6 +36,9 @@ mod search;
 mod serve;
 mod settings;
 mod shards;
+mod singular_settings;
+mod singular_table;
+mod singularity_run;
 mod spatial_picture;
 mod surrogate_check;
 mod surrogate_search;
@@ -55,6 +62,9 @@ pub use settings::{
     ReportSettings, Search, Study,
 };
 pub use shards::{MergeReport, Part, ShardReport, build_part, merge};
+pub use singular_settings::{
+    Configuration, FailureStudy, LargestManifold, LargestSearch, NamedGoal, SingularitySearch,
+};
 pub use surrogate_settings::{
     Arcs, DatasetSettings, DecoderKind, Mdn, ModelFile, SurrogateEstimator, SurrogateMethod,
     SurrogateSettings, Train, Training, Validate,

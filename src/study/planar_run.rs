@@ -44,9 +44,7 @@ pub(super) fn run(study: &Study, options: &RunOptions, ready: Ready) -> Result<V
             let joint_limits = arm.to_joints(&limits);
             (arm, limits, joint_limits, Some(optimum), Vec::new())
         }
-        Question::Manifolds(_) | Question::Train(_) | Question::Validate(_) => {
-            return Err(anyhow::anyhow!("this kind of study measures no workspace").into());
-        }
+        _ => return Err(anyhow::anyhow!("this kind of study measures no workspace").into()),
     };
     let outcome = Outcome {
         study,

@@ -3,7 +3,10 @@
 use super::checkpoint::{Stage, Store};
 use super::optimise::Session;
 use super::settings::{Estimator, Question, Study};
-use super::{check_folder, hybrid_run, manifold_run, planar_run, train_run, validate_run};
+use super::{
+    check_folder, failure_run, hybrid_run, largest_run, manifold_run, planar_run, singularity_run,
+    train_run, validate_run,
+};
 use crate::diagnostic::{InputError, Problem};
 use crate::report;
 use serde_json::Value;
@@ -102,6 +105,11 @@ fn run_in_pool(
         (Question::Manifolds(manifolds), _) => manifold_run::run(study, manifolds, options, ready),
         (Question::Train(train), _) => train_run::run(study, train, options, ready),
         (Question::Validate(validate), _) => validate_run::run(study, validate, options, ready),
+        (Question::Singularities(search), _) => singularity_run::run(study, search, options, ready),
+        (Question::LargestManifold(largest), _) => largest_run::run(study, largest, options, ready),
+        (Question::FailureExperiment(failure), _) => {
+            failure_run::run(study, failure, options, ready)
+        }
         (_, Estimator::Exact { .. } | Estimator::Surrogate { .. }) => {
             planar_run::run(study, options, ready)
         }

@@ -78,6 +78,17 @@ pub(super) fn check_surrogate(file: &StudyFile, problems: &Problems, robot: &Rob
     }
 }
 
+/// Reports why singular configurations cannot be searched: any degree of redundancy will do.
+pub(super) fn check_singularities(file: &StudyFile, problems: &Problems, robot: &Robot) {
+    if robot.degree_of_redundancy(file.space.value) < 0 {
+        report_no_redundancy(file, problems, robot);
+        return;
+    }
+    if let Some(Refusal { place, problem }) = manifold_refusal(file, robot, isize::MAX / 2) {
+        problems.report(place, problem);
+    }
+}
+
 /// Why a study cannot be served, and where that is to be mended.
 struct Refusal<'f> {
     place: &'f Place,

@@ -4,6 +4,7 @@
 //! that the study as run reads like the study as written; [`DegreeLimits::to_limits`] converts.
 
 use super::hybrid_settings::Hybrid;
+use super::singular_settings::{FailureStudy, LargestManifold, SingularitySearch};
 use super::surrogate_settings::{SurrogateEstimator, Train, Validate};
 use crate::design::{JointKind, Robot, TaskSpace};
 use crate::kinematics::{JointScale, joint_scales};
@@ -64,6 +65,12 @@ pub enum Question {
     Train(Train),
     /// How far are surrogates from the exact workspace?
     Validate(Validate),
+    /// Where does the robot lose rank?
+    Singularities(SingularitySearch),
+    /// Where can it lose any joint, anywhere in its range, and hold the task?
+    LargestManifold(LargestManifold),
+    /// Does it reach these goals after a joint has locked on the way?
+    FailureExperiment(FailureStudy),
 }
 
 /// Settings of `kind = "estimate"`.
@@ -261,6 +268,9 @@ impl Question {
             Question::Manifolds(_) => "manifolds",
             Question::Train(_) => "train",
             Question::Validate(_) => "validate",
+            Question::Singularities(_) => "singularities",
+            Question::LargestManifold(_) => "largest-manifold",
+            Question::FailureExperiment(_) => "failure-experiment",
         }
     }
 }

@@ -6,8 +6,9 @@ use super::settings::{
     Design, Estimate, Estimator, EstimatorMethod, FigureFormat, Manifolds, Optimise,
     OptimiserSettings, Question, ReportSettings, Study,
 };
+use super::singular_settings::LargestManifold;
 use super::surrogate_check::Subject;
-use super::{hybrid_table, limits, pose_table, serve};
+use super::{hybrid_table, limits, pose_table, serve, singular_table};
 use crate::diagnostic::{Item, Place, Problem, Problems};
 use crate::workspace::FailureSet;
 
@@ -55,6 +56,10 @@ pub(super) fn study(
             let question = subject.validate().map(Question::Validate);
             (question, Estimator::default())
         }
+        kind => (
+            singular(file, problems, &design, kind),
+            Estimator::default(),
+        ),
     };
     Some(Study {
         name: name.to_owned(),
@@ -180,6 +185,43 @@ fn manifolds(file: &StudyFile, problems: &Problems, design: &Design) -> Option<M
     })
 }
 
+/// The studies about singular configurations.
+fn singular(
+    file: &StudyFile,
+    problems: &Problems,
+    design: &Design,
+    kind: Kind,
+) -> Option<Question> {
+    let singularities = file.singularities.as_ref().map(|item| item.value.clone());
+    let singularities = singularities.unwrap_or_default();
+    match kind {
+        Kind::Singularities => {
+            refuse_tables(file, problems, "singularities");
+            serve::check_singularities(file, problems, &design.robot);
+            Some(Question::Singularities(singularities))
+        }
+        Kind::LargestManifold => {
+            refuse_tables(file, problems, "largest-manifold");
+            serve::check_manifolds(file, problems, &design.robot);
+            let largest = file.largest.as_ref().map(|item| item.value.clone());
+            Some(Question::LargestManifold(LargestManifold {
+                singularities,
+                largest: largest.unwrap_or_default(),
+            }))
+        }
+        _ => {
+            refuse_tables(file, problems, "failure-experiment");
+            serve::check_manifolds(file, problems, &design.robot);
+            let Some(table) = &file.failure else {
+                report_missing_goals(problems);
+                return None;
+            };
+            let study = singular_table::failure(&table.value, &design.robot, problems)?;
+            Some(Question::FailureExperiment(study))
+        }
+    }
+}
+
 /// Reports every table that belongs to another kind of study.
 fn refuse_tables(file: &StudyFile, problems: &Problems, kind: &str) {
     fn place<T>(item: &Option<Item<T>>) -> Option<&Place> {
@@ -190,7 +232,13 @@ fn refuse_tables(file: &StudyFile, problems: &Problems, kind: &str) {
         span: limits.lower_deg.place.span.clone(),
     });
     let measured: &[&str] = &["estimate", "optimise"];
-    let tables: [(Option<&Place>, &[&str]); 9] = [
+    let tables: [(Option<&Place>, &[&str]); 12] = [
+        (
+            place(&file.singularities),
+            &["singularities", "largest-manifold"],
+        ),
+        (place(&file.largest), &["largest-manifold"]),
+        (place(&file.failure), &["failure-experiment"]),
         (file.estimator.place.as_ref(), measured),
         (place(&file.estimate), &["estimate"]),
         (place(&file.search), &["optimise"]),
@@ -301,6 +349,22 @@ fn report_missing_limits(problems: &Problems, joints: usize) {
         found: "no table `[limits]`".into(),
         expected: format!("`lower_deg` and `upper_deg` with {joints} entries each"),
         help: "add `[limits]` with `lower_deg = […]` and `upper_deg = […]`".into(),
+    };
+    problems.report_absent(&place, problem);
+}
+
+fn report_missing_goals(problems: &Problems) {
+    let place = Place {
+        key: "failure-experiment".into(),
+        span: 0..0,
+    };
+    let problem = Problem {
+        message: "a failure experiment needs a start and goals".into(),
+        found: "no table `[failure-experiment]`".into(),
+        expected: "`start_deg` and `goals`".into(),
+        help: "add `[failure-experiment]` with `start_deg = […]` and `goals = [ { name = \"A\", \
+               theta_deg = […] } ]`"
+            .into(),
     };
     problems.report_absent(&place, problem);
 }

@@ -7,14 +7,11 @@
 
 use super::{ArtificialLimits, FailureSet};
 use crate::angle::{AngleSet, Arc};
-use crate::manifold::{PreImage, SelfMotionManifold};
+use crate::manifold::{PreImage, SelfMotionManifold, runs_inside};
 
 /// Parts of a segment between which a curve is looked at. A segment is at most 0.4 rad long, so
 /// that what is overlooked inside a part is below 1e-5 rad.
 const PARTS: usize = 64;
-
-/// Halvings that locate where a curve leaves a box, far below a part's length.
-const HALVINGS: usize = 40;
 
 /// Which failures a pose survives.
 #[derive(Clone, Debug, PartialEq)]
@@ -86,7 +83,7 @@ pub fn ranges_within(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<
 fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]]) -> Vec<AngleSet> {
     let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); bounds.len()];
     for manifold in manifolds {
-        for run in runs(manifold, &|theta: &[f64]| is_inside(theta, bounds)) {
+        for run in runs_inside(manifold, PARTS, &|theta: &[f64]| is_inside(theta, bounds)) {
             for (arcs, [low, high]) in arcs.iter_mut().zip(run.spans) {
                 arcs.push(Arc::from_interval(low, high));
             }
@@ -99,85 +96,8 @@ fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]])
 /// but joint 1's [S4 §III.B], in internal joint variables unwrapped along the curve.
 pub fn limit_crossings(manifold: &SelfMotionManifold, limits: &ArtificialLimits) -> Vec<Vec<f64>> {
     let bounds: Vec<[Arc; 1]> = limits.joints().iter().map(|l| [l.arc()]).collect();
-    let runs = runs(manifold, &|theta: &[f64]| is_inside(theta, &bounds));
+    let runs = runs_inside(manifold, PARTS, &|theta: &[f64]| is_inside(theta, &bounds));
     runs.into_iter().flat_map(|run| run.ends).collect()
-}
-
-/// A connected part of a curve inside a box.
-struct Run {
-    /// Least and greatest variable of every joint.
-    spans: Vec<[f64; 2]>,
-    /// Where the curve enters and leaves the box; not the ends of the curve itself.
-    ends: Vec<Vec<f64>>,
-}
-
-/// The connected parts of a curve at which `is_inside` holds.
-fn runs(manifold: &SelfMotionManifold, is_inside: &impl Fn(&[f64]) -> bool) -> Vec<Run> {
-    let mut runs: Vec<Run> = Vec::new();
-    let first = manifold.point(0);
-    let mut was_inside = is_inside(first);
-    if was_inside {
-        runs.push(Run::at(first));
-    }
-    for index in 0..manifold.vertices().saturating_sub(1) {
-        for part in 1..=PARTS {
-            let [from, to] = [part - 1, part].map(|k| k as f64 / PARTS as f64);
-            let next = manifold.at(index, to);
-            let now = is_inside(&next);
-            if now != was_inside {
-                let edge = crossing(manifold, index, [from, to], was_inside, is_inside);
-                if now {
-                    runs.push(Run::at(&edge));
-                }
-                if let Some(run) = runs.last_mut() {
-                    run.widen(&edge);
-                    run.ends.push(edge);
-                }
-            }
-            if now && let Some(run) = runs.last_mut() {
-                run.widen(&next);
-            }
-            was_inside = now;
-        }
-    }
-    runs
-}
-
-impl Run {
-    fn at(theta: &[f64]) -> Run {
-        Run {
-            spans: theta.iter().map(|&value| [value, value]).collect(),
-            ends: Vec::new(),
-        }
-    }
-
-    fn widen(&mut self, theta: &[f64]) {
-        for (span, &value) in self.spans.iter_mut().zip(theta) {
-            *span = [span[0].min(value), span[1].max(value)];
-        }
-    }
-}
-
-/// The last configuration inside, between two parameters of a segment of which one is inside.
-fn crossing(
-    manifold: &SelfMotionManifold,
-    index: usize,
-    ends: [f64; 2],
-    first_is_inside: bool,
-    is_inside: &impl Fn(&[f64]) -> bool,
-) -> Vec<f64> {
-    let [mut inside, mut outside] = match first_is_inside {
-        true => ends,
-        false => [ends[1], ends[0]],
-    };
-    for _ in 0..HALVINGS {
-        let middle = 0.5 * (inside + outside);
-        match is_inside(&manifold.at(index, middle)) {
-            true => inside = middle,
-            false => outside = middle,
-        }
-    }
-    manifold.at(index, inside)
 }
 
 #[cfg(test)]
