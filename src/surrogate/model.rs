@@ -15,7 +15,7 @@ use crate::workspace::planar::LockedJoints;
 
 /// Nodes of the quadrature that turns sets into a size: radii inside the gate, radii over the
 /// whole reach [S3 §V], and bearings of a pose task.
-const GATE_RADII: usize = 48;
+const GATE_RADII: usize = 96;
 const REACH_RADII: usize = 100;
 const POSE_RADII: usize = 20;
 const POSE_BEARINGS: usize = 24;
