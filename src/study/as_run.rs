@@ -316,6 +316,16 @@ mod tests {
         [task]\nspace = 'planar-position'\n[failure-experiment]\nstart_deg = [0, 0.1, 1e-3]\n\
         goals = [ { name = 'A \"b\"', theta_deg = [1, 2, 3] }, { name = 'C', theta_deg = [0, 0, 0] } ]\n";
 
+    const TRAIN: &str = "kind = 'train'\ndesign = 'r.toml'\nseed = 9\n\
+        [task]\nspace = 'planar-position'\nfailures = [2]\n[dataset]\ndesigns = 512\n\
+        walk_share = 0.25\ncells = 7\nlink_lower = [0.5, 0.5, 0.5]\nlink_upper = [2, 2, 2]\n\
+        [surrogate]\nmethod = 'mdn'\nwidths = [8]\nencoding = 'raw'\nclosed_forms = 'none'\n\
+        [surrogate.mdn]\ncomponents = 3\nwrapped = false\nemptiness = false\n\
+        decoder = 'sampling'\n[training]\nepochs = 3\nbatch = 64\nlearning_rate = 0.01\n\
+        weight_decay = 0.0\npatience = 2\nmirror = false\n";
+    const TRAIN_DEFAULTS: &str = "kind = 'train'\ndesign = 'r.toml'\n\
+        [task]\nspace = 'planar-position'\n[surrogate]\nmethod = 'arcs'\n";
+
     #[test]
     fn the_study_as_run_means_the_same_from_its_own_folder() {
         let dir = tempfile::tempdir().unwrap();
@@ -331,6 +341,8 @@ mod tests {
             SINGULARITIES,
             LARGEST,
             FAILURE,
+            TRAIN,
+            TRAIN_DEFAULTS,
         ] {
             let written = dir.path().join("study.toml");
             std::fs::write(&written, text).unwrap();
