@@ -313,7 +313,7 @@ mod tests {
 
     #[test]
     fn kinds_are_named() {
-        let planned = error(&HEAD.replace("estimate", "singularities"));
+        let planned = error(&HEAD.replace("estimate", "redundancy"));
         assert!(planned.problem().message.contains("does not serve"));
         let misspelt = error(&HEAD.replace("estimate", "optimize"));
         assert!(misspelt.problem().help.contains("\"optimise\""));
