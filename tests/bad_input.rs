@@ -95,7 +95,13 @@ fn unknown_choices_name_the_nearest() {
         &hints,
     );
     assert_bad_study("\"estimate\"", "\"optimize\"", 1, "kind", &["\"optimise\""]);
-    assert_bad_study("\"estimate\"", "\"train\"", 1, "kind", &["\"optimise\""]);
+    assert_bad_study(
+        "\"estimate\"",
+        "\"redundancy\"",
+        1,
+        "kind",
+        &["\"optimise\""],
+    );
     let hints = ["did you mean \"hybrid\"?"];
     assert_bad_study("\"exact\"", "\"hybird\"", 11, "estimator.method", &hints);
 }
@@ -194,6 +200,8 @@ fn a_missing_design_file() {
 #[test]
 fn an_estimator_that_cannot_serve() {
     let hints = ["unknown choice", "\"hybrid\""];
+    assert_bad_study("\"exact\"", "\"neural\"", 11, "estimator.method", &hints);
+    let hints = ["measures nothing", "\"hybrid\""];
     assert_bad_study("\"exact\"", "\"surrogate\"", 11, "estimator.method", &hints);
     let dir = folder();
     let row = "{ kind = \"revolute\", alpha_deg = 90, a = 0.5 }";
