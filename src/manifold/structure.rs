@@ -184,19 +184,20 @@ impl fmt::Display for Cure {
 /// The ends between which internal joint variables are drawn.
 fn ranges(robot: &Robot) -> Option<Vec<[f64; 2]>> {
     let scales = joint_scales(robot)?;
-    let range = |(joint, scale): (usize, &crate::kinematics::JointScale)| {
-        match (robot.joint_kind(joint), &robot.physical_limits) {
-            (JointKind::Revolute, None) => [-PI, PI],
-            (_, Some(limits)) => {
-                let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
-                let free = upper - lower >= 2.0 * PI;
-                match robot.joint_kind(joint) {
-                    JointKind::Revolute if free => [-PI, PI],
-                    _ => [scale.inner(lower), scale.inner(upper)],
-                }
+    let range = |(joint, scale): (usize, &crate::kinematics::JointScale)| match (
+        robot.joint_kind(joint),
+        &robot.physical_limits,
+    ) {
+        (JointKind::Revolute, None) => [-PI, PI],
+        (_, Some(limits)) => {
+            let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
+            let free = upper - lower >= 2.0 * PI;
+            match robot.joint_kind(joint) {
+                JointKind::Revolute if free => [-PI, PI],
+                _ => [scale.inner(lower), scale.inner(upper)],
             }
-            (JointKind::Prismatic, None) => [0.0, 0.0],
         }
+        (JointKind::Prismatic, None) => [0.0, 0.0],
     };
     Some(scales.iter().enumerate().map(range).collect())
 }
