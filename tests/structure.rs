@@ -51,8 +51,7 @@ fn other_robots_are_not_accused() {
     assert_eq!(verdict(&planar, TaskSpace::SpatialPosition), None);
 }
 
-/// Equal links of a planar 3R: the null vector is the cofactors of J, here at one configuration by
-/// hand through its greatest value: no component exceeds 1, and all joints move.
+/// With one degree of redundancy the null space is one unit vector.
 #[test]
 fn components_are_those_of_unit_vectors() {
     let planar = design("planar_3r_equal.toml");

@@ -7,7 +7,7 @@
 //! measure zero: the arm is structurally intolerant of a failure of joint i, whatever its limits.
 
 use crate::design::{Geometry, JointKind, Robot, TaskSpace};
-use crate::kinematics::{Chain, Differential, joint_scales, reach_bound};
+use crate::kinematics::{Chain, Differential, JointScale, joint_scales, reach_bound};
 use crate::sampling::stream;
 use nalgebra::{DMatrix, DVector};
 use rand::Rng;
@@ -184,7 +184,7 @@ impl fmt::Display for Cure {
 /// The ends between which internal joint variables are drawn.
 fn ranges(robot: &Robot) -> Option<Vec<[f64; 2]>> {
     let scales = joint_scales(robot)?;
-    let range = |(joint, scale): (usize, &crate::kinematics::JointScale)| match (
+    let range = |(joint, scale): (usize, &JointScale)| match (
         robot.joint_kind(joint),
         &robot.physical_limits,
     ) {

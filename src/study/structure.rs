@@ -4,7 +4,7 @@ use super::report_parts::failures_label;
 use super::result::{SCHEMA, provenance};
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::Study;
-use crate::manifold::Intolerance;
+use crate::manifold::{Cure, Intolerance};
 use crate::report;
 use serde_json::{Value, json};
 
@@ -16,7 +16,7 @@ pub(super) fn verdict(study: &Study) -> Option<Intolerance> {
 
 /// The verdict as a field of `result.json`.
 pub(super) fn to_json(verdict: &Intolerance) -> Value {
-    let cure = |cure: &crate::manifold::Cure| {
+    let cure = |cure: &Cure| {
         json!({
             "joint": cure.joint,
             "parameter": cure.parameter,
