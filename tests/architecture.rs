@@ -62,6 +62,7 @@ const MODULES: [(&str, &[&str]); 14] = [
             "diagnostic",
             "design",
             "kinematics",
+            "manifold",
             "workspace",
             "objective",
             "optimiser",

@@ -4,6 +4,7 @@ use super::joint_table::joint_table;
 use super::{Ending, output};
 use crate::design::{JointKind, Robot, TaskSpace, read_design};
 use crate::kinematics::{JointPlace, display_posture, joint_places, tool_frame, workspace_extent};
+use crate::manifold::Intolerance;
 use crate::report::{
     Figure, JointMark, RobotFigure, SpatialRobotFigure, figure_png, figure_svg, plain, write_bytes,
 };
@@ -85,6 +86,9 @@ fn describe(robot: &Robot) -> String {
             &format!("degree of redundancy, {task}:"),
             &degree.to_string(),
         );
+        if let Some(verdict) = Intolerance::of(robot, task, |_| true) {
+            text += &line(&format!("fault tolerance, {task}:"), &verdict.to_string());
+        }
     }
     text + &extent_lines(robot)
 }

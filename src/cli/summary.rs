@@ -30,6 +30,7 @@ pub(super) fn summary(result: &Value, out: &Path) -> String {
     if let Some(share) = size["normalised"].as_f64() {
         let _ = writeln!(text, "  {:<25} {:.3} %", "share", 100.0 * share);
     }
+    structure(result, &mut text);
     pose(result, &mut text);
     singular(result, &mut text);
     let slides = limits(&result["limits_m"]);
@@ -57,6 +58,13 @@ fn number(value: f64, error: &Value) -> String {
         format!("{value:.6}")
     } else {
         with_error(value, error)
+    }
+}
+
+/// Why no limits make the robot fault tolerant: the first note says it.
+fn structure(result: &Value, text: &mut String) {
+    if let (true, Some(note)) = (result["structure"].is_object(), result["notes"][0].as_str()) {
+        let _ = writeln!(text, "  {note}");
     }
 }
 

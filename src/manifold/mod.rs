@@ -27,6 +27,7 @@ mod self_motion;
 mod sliced;
 mod solver;
 mod source;
+mod structure;
 mod trace;
 mod within;
 
@@ -38,5 +39,6 @@ pub use self_motion::{CriticalPoint, SelfMotionManifold};
 pub use sliced::Faces;
 pub use solver::SearchSettings;
 pub use source::{CurveRef, CurveSource, MOST_REDUNDANT};
+pub use structure::{Cure, Intolerance, SelfMotionShares};
 pub use trace::TraceSettings;
 pub use within::{Run, runs_inside};

@@ -3,6 +3,8 @@
 use super::optimise::Optimum;
 use super::result::{SCHEMA, limits_deg, provenance, search, status, workspaces};
 use super::settings::{DegreeLimits, Question, Study};
+use super::structure;
+use crate::manifold::Intolerance;
 use crate::workspace::WorkspaceSizes;
 use crate::workspace::hybrid::{Atlas, SamplePlan, Sampling};
 use serde_json::{Value, json};
@@ -15,6 +17,8 @@ pub(super) struct HybridFinding<'a> {
     /// The atlas on which `sizes` were measured.
     pub atlas: &'a Atlas,
     pub optimum: Option<&'a Optimum>,
+    /// Why S_F is 0 for all limits, if it is.
+    pub structure: Option<&'a Intolerance>,
     /// Standard error of the optimum's S_F on the samples of its search.
     pub searched_error: Option<f64>,
     pub seconds: Value,
@@ -49,6 +53,9 @@ impl HybridFinding<'_> {
             result["search"] = search(optimum, optimise);
             result["search"]["score_on_search_sample"] = json!(optimum.score());
             result["search"]["standard_error_on_search_sample"] = json!(self.searched_error);
+        }
+        if let Some(verdict) = self.structure {
+            result["structure"] = structure::to_json(verdict);
         }
         result["notes"] = json!(self.notes);
         result["seconds"] = self.seconds.clone();

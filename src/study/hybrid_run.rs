@@ -11,7 +11,9 @@ use super::result::status;
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::{DegreeLimits, Optimise, Question, Study};
 use super::spatial_picture::Picture;
+use super::structure;
 use crate::design::JointKind;
+use crate::manifold::Intolerance;
 use crate::objective::{DesignSpace, HybridObjective};
 use crate::report::{self, Report, Sensitivity, write_report};
 use crate::workspace::hybrid::{Atlas, Rule};
@@ -39,6 +41,10 @@ pub(super) fn run(
     options: &RunOptions,
     ready: Ready,
 ) -> Result<Value, RunError> {
+    let verdict = structure::verdict(study);
+    if let (Question::Optimise(_), Some(verdict)) = (&study.question, &verdict) {
+        return structure::without_search(study, verdict, options, &ready);
+    }
     check_cache(options.cache.as_deref())?;
     let given = match &study.question {
         Question::Estimate(estimate) => Some(estimate.limits.to_limits(&study.design.robot)),
@@ -50,6 +56,7 @@ pub(super) fn run(
         hybrid,
         options,
         ready,
+        verdict,
         tracing: 0.0,
         searching: 0.0,
     };
@@ -75,6 +82,8 @@ struct Run<'a> {
     hybrid: &'a Hybrid,
     options: &'a RunOptions,
     ready: Ready,
+    /// Why S_F is 0 for all limits, if it is.
+    verdict: Option<Intolerance>,
     /// Seconds spent so far.
     tracing: f64,
     searching: f64,
@@ -179,6 +188,7 @@ impl Run<'_> {
             sizes: &sizes,
             atlas,
             optimum,
+            structure: self.verdict.as_ref(),
             searched_error: searched.map(|searched| searched.size.error),
             seconds: json!({
                 "total": session.store.seconds(),
@@ -251,7 +261,8 @@ impl Run<'_> {
         searched: bool,
     ) -> Vec<String> {
         let robot = &self.study.design.robot;
-        let mut notes = size_notes(sizes, limits, robot, searched);
+        let mut notes: Vec<String> = self.verdict.iter().map(structure::note).collect();
+        notes.extend(size_notes(sizes, limits, robot, searched));
         let counts = atlas.counts();
         if counts.failed > 0 {
             notes.push(format!(

@@ -40,6 +40,7 @@ mod singular_settings;
 mod singular_table;
 mod singularity_run;
 mod spatial_picture;
+mod structure;
 mod surrogate_check;
 mod surrogate_search;
 mod surrogate_settings;
