@@ -150,7 +150,7 @@ impl Model {
         let set = |(k, (row, cell)): (usize, (&[f32], &Cell))| {
             let decoded = match &self.architecture.head {
                 Head::Mdn(head) => {
-                    // One stream per cell: a set does not depend on the cells beside it.
+                    // One stream per place in the list: the same call gives the same sets.
                     let generator = &mut stream(0, k as u64);
                     self.decoder.decode(&head.mixture(row), generator)
                 }
