@@ -2,7 +2,7 @@
 //!
 //! Data flows through the modules in this order, and a module imports only from those before it:
 //! [`design`] → [`kinematics`] → [`manifold`] → [`singularity`] → [`workspace`] → [`objective`] →
-//! [`optimiser`] → [`report`] → [`study`] → [`cli`]. [`angle`], [`sampling`] and [`diagnostic`] serve all of them.
+//! [`optimiser`] → [`synthesis`] → [`report`] → [`study`] → [`cli`]. [`angle`], [`sampling`] and [`diagnostic`] serve all of them.
 
 pub mod angle;
 pub mod cli;
@@ -17,4 +17,5 @@ pub mod sampling;
 pub mod singularity;
 pub mod study;
 pub mod surrogate;
+pub mod synthesis;
 pub mod workspace;

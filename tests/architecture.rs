@@ -5,7 +5,7 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// Every module with all it may import from, in order: a module may only name earlier ones.
-const MODULES: [(&str, &[&str]); 14] = [
+const MODULES: [(&str, &[&str]); 15] = [
     ("angle", &[]),
     ("sampling", &[]),
     ("diagnostic", &[]),
@@ -36,6 +36,19 @@ const MODULES: [(&str, &[&str]); 14] = [
         &["angle", "sampling", "design", "workspace", "objective"],
     ),
     ("optimiser", &["sampling", "objective"]),
+    (
+        "synthesis",
+        &[
+            "angle",
+            "sampling",
+            "design",
+            "kinematics",
+            "manifold",
+            "workspace",
+            "objective",
+            "optimiser",
+        ],
+    ),
     ("report", &["angle", "workspace"]),
     (
         "study",
@@ -51,6 +64,7 @@ const MODULES: [(&str, &[&str]); 14] = [
             "objective",
             "surrogate",
             "optimiser",
+            "synthesis",
             "report",
         ],
     ),

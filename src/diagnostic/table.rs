@@ -179,6 +179,16 @@ impl<'d> Entry<'d> {
         self.value.is_str()
     }
 
+    /// Whether the value is an array.
+    pub fn is_array(&self) -> bool {
+        self.value.is_array()
+    }
+
+    /// Whether the value is a table.
+    pub fn is_table(&self) -> bool {
+        self.value.is_table()
+    }
+
     /// The value as a table with the given known keys.
     pub fn table(&self, known: &[&str]) -> Option<Table<'d>> {
         match self.value {

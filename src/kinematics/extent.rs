@@ -51,6 +51,11 @@ pub fn workspace_extent(robot: &Robot) -> Option<Extent> {
     })
 }
 
+/// The reach alone: see [`Extent::reach`].
+pub fn workspace_reach(robot: &Robot) -> Option<f64> {
+    Some(Arm::new(robot)?.maximum(Aim::Away).max(0.0).sqrt())
+}
+
 /// What is made as large as possible.
 #[derive(Clone, Copy)]
 enum Aim {

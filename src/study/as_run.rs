@@ -7,6 +7,7 @@ use super::settings::{
 };
 use super::singular_settings::{FailureStudy, LargestSearch, SingularitySearch};
 use super::surrogate_settings::{SurrogateSettings, Train, Training, Validate};
+use super::synthesis_settings::SynthesisStudy;
 use crate::design::TaskSpace;
 use crate::surrogate::Draw;
 use crate::workspace::FailureSet;
@@ -46,6 +47,7 @@ struct AsRun<'a> {
     singularities: Option<&'a SingularitySearch>,
     largest_manifold: Option<&'a LargestSearch>,
     failure_experiment: Option<&'a FailureStudy>,
+    synthesis: Option<&'a SynthesisStudy>,
     report: &'a ReportSettings,
 }
 
@@ -140,6 +142,7 @@ impl<'a> AsRun<'a> {
             singularities: None,
             largest_manifold: None,
             failure_experiment: None,
+            synthesis: None,
             report: &study.report,
         };
         match &study.question {
@@ -183,6 +186,11 @@ impl<'a> AsRun<'a> {
             Question::FailureExperiment(study) => {
                 as_run.estimator = None;
                 as_run.failure_experiment = Some(study);
+            }
+            Question::Synthesis(synthesis) => {
+                as_run.estimator = None;
+                as_run.limits = synthesis.limits.as_ref();
+                as_run.synthesis = Some(&synthesis.search);
             }
         }
         as_run

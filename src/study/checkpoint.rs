@@ -6,6 +6,7 @@ use crate::diagnostic::{InputError, Problem};
 use crate::optimiser::{CoordinateAscent, Genetic, HistoryPoint, Snapshot};
 use crate::report::write_bytes;
 use crate::surrogate::Training;
+use crate::synthesis::{ParetoSearch, Synthesis};
 use serde::{Deserialize, Serialize};
 use sha2::{Digest, Sha256};
 use std::path::{Path, PathBuf};
@@ -13,7 +14,7 @@ use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
 /// Version of the file's layout.
-const LAYOUT: u32 = 2;
+const LAYOUT: u32 = 3;
 
 /// Shortest time between two checkpoints: what a killed run loses at most, beside the iteration
 /// it was in.
@@ -25,6 +26,8 @@ pub(super) enum Stage {
     Ascent(Box<Snapshot<CoordinateAscent>>),
     Genetic(Box<Snapshot<Genetic>>),
     Training(Box<Training>),
+    Synthesis(Box<Synthesis>),
+    Pareto(Box<ParetoSearch>),
     /// A local stage, with the records of those before it.
     Local {
         before: Vec<Record>,

@@ -10,6 +10,7 @@ use super::settings::{EstimatorMethod, FigureFormat};
 use super::singular_settings::{LargestSearch, SingularitySearch};
 use super::singular_table::{self, FailureTable};
 use super::surrogate_table::{self, SurrogateEstimatorTable, TrainTable, ValidateTable};
+use super::synthesis_table::{self, SynthesisTable};
 use crate::design::TaskSpace;
 use crate::diagnostic::{Document, InputError, Item, Place, Source, Table, nearest};
 
@@ -34,17 +35,19 @@ const KEYS: &[&str] = &[
     "singularities",
     "largest-manifold",
     "failure-experiment",
+    "synthesis",
     "report",
 ];
 
 /// Kinds of studies that exist, and planned ones.
-const KINDS: [(&str, Option<Kind>); 9] = [
+const KINDS: [(&str, Option<Kind>); 10] = [
     ("estimate", Some(Kind::Estimate)),
     ("optimise", Some(Kind::Optimise)),
     ("manifolds", Some(Kind::Manifolds)),
     ("singularities", Some(Kind::Singularities)),
     ("largest-manifold", Some(Kind::LargestManifold)),
     ("failure-experiment", Some(Kind::FailureExperiment)),
+    ("synthesis", Some(Kind::Synthesis)),
     ("train", Some(Kind::Train)),
     ("validate", Some(Kind::Validate)),
     ("redundancy", None),
@@ -79,6 +82,7 @@ pub struct StudyFile {
     pub(super) singularities: Option<Item<SingularitySearch>>,
     pub(super) largest: Option<Item<LargestSearch>>,
     pub(super) failure: Option<Item<FailureTable>>,
+    pub(super) synthesis: Option<Item<SynthesisTable>>,
     pub(super) formats: Option<Item<Vec<Item<FigureFormat>>>>,
     pub(super) figures: Option<bool>,
 }
@@ -94,6 +98,7 @@ pub(super) enum Kind {
     Singularities,
     LargestManifold,
     FailureExperiment,
+    Synthesis,
 }
 
 /// `failures = "any"` or a list of joint numbers from 1.
@@ -189,6 +194,7 @@ fn read(root: &Table) -> Option<StudyFile> {
         singularities: singular_table::read_singularities(root),
         largest: singular_table::read_largest(root),
         failure: singular_table::read_failure(root),
+        synthesis: synthesis_table::read(root),
         formats: report.as_ref().and_then(read_formats),
         figures: report
             .and_then(|table| table.boolean("figures"))

@@ -45,6 +45,11 @@ mod surrogate_check;
 mod surrogate_search;
 mod surrogate_settings;
 mod surrogate_table;
+mod synthesis_check;
+mod synthesis_result;
+mod synthesis_run;
+mod synthesis_settings;
+mod synthesis_table;
 mod train_report;
 mod train_run;
 mod validate;
@@ -66,6 +71,8 @@ pub use shards::{MergeReport, Part, ShardReport, build_part, merge};
 pub use singular_settings::{
     Configuration, FailureStudy, LargestManifold, LargestSearch, NamedGoal, SingularitySearch,
 };
+pub use synthesis_check::SynthesisQuestion;
+pub use synthesis_settings::{Effort, Family, ParameterRange, RowRange, SynthesisStudy};
 pub use surrogate_settings::{
     Arcs, DatasetSettings, DecoderKind, Mdn, ModelFile, SurrogateEstimator, SurrogateMethod,
     SurrogateSettings, Train, Training, Validate,

@@ -5,7 +5,7 @@ use super::optimise::Session;
 use super::settings::{Estimator, Question, Study};
 use super::{
     check_folder, failure_run, hybrid_run, largest_run, manifold_run, planar_run, singularity_run,
-    train_run, validate_run,
+    synthesis_run, train_run, validate_run,
 };
 use crate::diagnostic::{InputError, Problem};
 use crate::report;
@@ -110,6 +110,7 @@ fn run_in_pool(
         (Question::FailureExperiment(failure), _) => {
             failure_run::run(study, failure, options, ready)
         }
+        (Question::Synthesis(question), _) => synthesis_run::run(study, question, options, ready),
         (_, Estimator::Exact { .. } | Estimator::Surrogate { .. }) => {
             planar_run::run(study, options, ready)
         }

@@ -89,6 +89,15 @@ pub(super) fn check_singularities(file: &StudyFile, problems: &Problems, robot: 
     }
 }
 
+/// Reports why the workspaces of this robot and task cannot be sampled.
+pub(super) fn check_atlas(file: &StudyFile, problems: &Problems, robot: &Robot) {
+    if robot.degree_of_redundancy(file.space.value) < 1 {
+        report_no_redundancy(file, problems, robot);
+    } else if let Some(Refusal { place, problem }) = hybrid_refusal(file, robot) {
+        problems.report(place, problem);
+    }
+}
+
 /// Why a study cannot be served, and where that is to be mended.
 struct Refusal<'f> {
     place: &'f Place,

@@ -5,6 +5,7 @@
 
 use super::hybrid_settings::Hybrid;
 use super::singular_settings::{FailureStudy, LargestManifold, SingularitySearch};
+use super::synthesis_check::SynthesisQuestion;
 use super::surrogate_settings::{SurrogateEstimator, Train, Validate};
 use crate::design::{JointKind, Robot, TaskSpace};
 use crate::kinematics::{JointScale, joint_scales};
@@ -71,6 +72,8 @@ pub enum Question {
     LargestManifold(LargestManifold),
     /// Does it reach these goals after a joint has locked on the way?
     FailureExperiment(FailureStudy),
+    /// Which robot, with which limits, is best?
+    Synthesis(SynthesisQuestion),
 }
 
 /// Settings of `kind = "estimate"`.
@@ -271,6 +274,7 @@ impl Question {
             Question::Singularities(_) => "singularities",
             Question::LargestManifold(_) => "largest-manifold",
             Question::FailureExperiment(_) => "failure-experiment",
+            Question::Synthesis(_) => "synthesis",
         }
     }
 }

@@ -8,7 +8,7 @@ use super::settings::{
 };
 use super::singular_settings::LargestManifold;
 use super::surrogate_check::Subject;
-use super::{hybrid_table, limits, pose_table, serve, singular_table};
+use super::{hybrid_table, limits, pose_table, serve, singular_table, synthesis_check};
 use crate::diagnostic::{Item, Place, Problem, Problems};
 use crate::workspace::FailureSet;
 
@@ -55,6 +55,11 @@ pub(super) fn study(
             refuse_tables(file, problems, "validate");
             let question = subject.validate().map(Question::Validate);
             (question, Estimator::default())
+        }
+        Kind::Synthesis => {
+            refuse_tables(file, problems, "synthesis");
+            let question = synthesis_check::synthesis(file, problems, &design);
+            (question.map(Question::Synthesis), Estimator::default())
         }
         kind => (
             singular(file, problems, &design, kind),
@@ -232,7 +237,7 @@ fn refuse_tables(file: &StudyFile, problems: &Problems, kind: &str) {
         span: limits.lower_deg.place.span.clone(),
     });
     let measured: &[&str] = &["estimate", "optimise"];
-    let tables: [(Option<&Place>, &[&str]); 12] = [
+    let tables: [(Option<&Place>, &[&str]); 13] = [
         (
             place(&file.singularities),
             &["singularities", "largest-manifold"],
@@ -247,7 +252,11 @@ fn refuse_tables(file: &StudyFile, problems: &Problems, kind: &str) {
         (place(&file.manifolds), &["manifolds"]),
         (file.train_place.as_ref(), &["train"]),
         (place(&file.validate), &["validate"]),
-        (limits.as_ref(), &["estimate", "optimise", "manifolds"]),
+        (place(&file.synthesis), &["synthesis"]),
+        (
+            limits.as_ref(),
+            &["estimate", "optimise", "manifolds", "synthesis"],
+        ),
     ];
     for (place, kinds) in tables {
         if let Some(place) = place.filter(|_| !kinds.contains(&kind)) {

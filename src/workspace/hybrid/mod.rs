@@ -9,6 +9,7 @@ mod atlas;
 mod block;
 mod build;
 mod clip;
+mod coverage;
 mod family;
 mod first_joint;
 mod lanes;

@@ -1,0 +1,232 @@
+//! Runs `kind = "synthesis"`: searches robots, then measures, checks and reports the winner.
+
+use super::checkpoint::Stage;
+use super::run::{Ready, RunError, RunOptions};
+use super::settings::Study;
+use super::synthesis_check::SynthesisQuestion;
+use super::synthesis_result::{Reference, SynthesisFinding, Winner};
+use crate::synthesis::{
+    Arm, DesignProblem, Draft, Links, Look, ParetoSearch, Purpose, REPLICATES, Synthesis,
+    sample_seed,
+};
+use crate::workspace::{ArtificialLimits, FailureSet};
+use serde_json::Value;
+use std::sync::atomic::Ordering;
+use std::time::Instant;
+
+/// Runs `study` and returns the content of `result.json`.
+///
+/// # Errors
+/// The run was interrupted (a checkpoint is stored), or a file could not be written.
+pub(super) fn run(
+    study: &Study,
+    question: &SynthesisQuestion,
+    options: &RunOptions,
+    mut ready: Ready,
+) -> Result<Value, RunError> {
+    ready.begin(options)?;
+    let asked = &question.search;
+    let problem = asked.problem(study.task, &failures(study, question));
+    let starts: Vec<Links> = match asked.include_design {
+        true => asked.links_of(&study.design.robot, study.task).into_iter().collect(),
+        false => Vec::new(),
+    };
+    let saved = ready.saved.take();
+    let run = Run {
+        study,
+        question,
+        options,
+        ready: &ready,
+        problem,
+    };
+    let result = match asked.objectives.len() {
+        1 => run.one(saved, starts),
+        _ => run.front(saved, starts),
+    }?;
+    ready.session.store.remove();
+    Ok(result)
+}
+
+/// F for the robots that are searched, which may have another number of joints than the design.
+fn failures(study: &Study, question: &SynthesisQuestion) -> FailureSet {
+    let joints = question.search.links.len();
+    match joints == study.design.robot.joints() {
+        true => study.failures.clone(),
+        false => FailureSet::any(joints),
+    }
+}
+
+struct Run<'a> {
+    study: &'a Study,
+    question: &'a SynthesisQuestion,
+    options: &'a RunOptions,
+    ready: &'a Ready,
+    problem: DesignProblem,
+}
+
+impl Run<'_> {
+    fn tell(&self, share: f64, best: f64, message: &str) {
+        let done = (1000.0 * share.clamp(0.0, 1.0)) as u64;
+        self.ready.session.progress.update(done, 1000, best, message);
+    }
+
+    fn check_interrupt(&self) -> Result<(), RunError> {
+        match self.ready.session.interrupt.load(Ordering::SeqCst) {
+            true => Err(RunError::Interrupted),
+            false => Ok(()),
+        }
+    }
+
+    /// Searches one robot.
+    fn one(&self, saved: Option<Stage>, starts: Vec<Links>) -> Result<Value, RunError> {
+        let mut search = match saved {
+            Some(Stage::Synthesis(search)) => *search,
+            _ => {
+                let settings = self.question.search.search_settings();
+                Synthesis::new(settings, self.study.seed, starts)
+            }
+        };
+        let store = &self.ready.session.store;
+        while !search.is_done() {
+            if self.check_interrupt().is_err() {
+                store.save(Stage::Synthesis(Box::new(search)))?;
+                return Err(RunError::Interrupted);
+            }
+            search.advance(&self.problem);
+            let (share, best) = search.progress();
+            self.tell(0.8 * share, best, "searching robots");
+            store.save_if_due(|| Stage::Synthesis(Box::new(search.clone())))?;
+        }
+        // A kill while the report is made loses the report alone.
+        store.save(Stage::Synthesis(Box::new(search.clone())))?;
+        let searched = store.seconds();
+        let Some(finalist) = search.winner() else {
+            return Err(anyhow::anyhow!(
+                "no robot of this space has a fault-tolerant workspace: widen the bounds, or \
+                 raise `screened`"
+            )
+            .into());
+        };
+        let winner = self.winner(&finalist.draft)?;
+        self.check_interrupt()?;
+        let reference = self.reference()?;
+        let finding = SynthesisFinding {
+            study: self.study,
+            question: self.question,
+            search: Some(&search),
+            pareto: None,
+            winner: Some(&winner),
+            reference: reference.as_ref(),
+            searched,
+            seconds: store.seconds(),
+        };
+        finding.write(self.options, &self.ready.study_toml)
+    }
+
+    /// Searches a front.
+    fn front(&self, saved: Option<Stage>, starts: Vec<Links>) -> Result<Value, RunError> {
+        let asked = &self.question.search;
+        let mut search = match saved {
+            Some(Stage::Pareto(search)) => *search,
+            _ => ParetoSearch::new(
+                asked.pareto_settings(),
+                asked.objectives.clone(),
+                self.study.seed,
+                starts,
+            ),
+        };
+        let store = &self.ready.session.store;
+        while !search.is_done() {
+            if self.check_interrupt().is_err() {
+                store.save(Stage::Pareto(Box::new(search)))?;
+                return Err(RunError::Interrupted);
+            }
+            search.advance(&self.problem);
+            self.tell(0.9 * search.progress(), f64::NAN, "searching robots");
+            store.save_if_due(|| Stage::Pareto(Box::new(search.clone())))?;
+        }
+        store.save(Stage::Pareto(Box::new(search.clone())))?;
+        let searched = store.seconds();
+        let reference = self.reference()?;
+        let finding = SynthesisFinding {
+            study: self.study,
+            question: self.question,
+            search: None,
+            pareto: Some(&search),
+            winner: None,
+            reference: reference.as_ref(),
+            searched,
+            seconds: store.seconds(),
+        };
+        finding.write(self.options, &self.ready.study_toml)
+    }
+
+    fn report_look(&self) -> Look {
+        Look {
+            samples: self.question.search.effort.report_samples as u32,
+            seed: sample_seed(self.study.seed, Purpose::Report, 0),
+            replicates: REPLICATES,
+        }
+    }
+
+    /// The winner measured on samples that nothing was fitted to or chosen by.
+    fn winner(&self, draft: &Draft) -> Result<Winner, RunError> {
+        self.tell(0.82, draft.score, "measuring the winner on fresh samples");
+        let started = Instant::now();
+        let problem = &self.problem;
+        let nothing = || anyhow::anyhow!("the winner reaches nothing");
+        let arm = Arm::of_links(&problem.links, &draft.links).ok_or_else(nothing)?;
+        let atlas = problem
+            .atlas(&arm, self.report_look(), Some(&draft.limits))
+            .ok_or_else(nothing)?;
+        let measures = problem.measures(&arm, &atlas, &draft.limits);
+        Ok(Winner {
+            draft: draft.clone(),
+            counts: atlas.counts(),
+            measures,
+            measured: started.elapsed().as_secs_f64(),
+        })
+    }
+
+    /// The design that the winner is compared with, with its own limits or the best found for it.
+    fn reference(&self) -> Result<Option<Reference>, RunError> {
+        self.tell(0.95, f64::NAN, "measuring the design for comparison");
+        let (study, problem) = (self.study, &self.problem);
+        let robot = &study.design.robot;
+        let problem = DesignProblem {
+            failures: study.failures.clone(),
+            ..problem.clone()
+        };
+        let prone = |joint| study.failures.contains(joint);
+        let verdict = crate::manifold::Intolerance::of(robot, study.task, prone);
+        let Some(arm) = Arm::of_robot(robot, study.task) else {
+            return Ok(None);
+        };
+        let limits = match &self.question.limits {
+            Some(limits) => limits.to_limits(robot),
+            None if verdict.is_some() => ArtificialLimits::free(robot.joints()),
+            None => {
+                let look = Look {
+                    samples: self.question.search.effort.fit_samples as u32,
+                    seed: sample_seed(study.seed, Purpose::Fit, 1),
+                    replicates: 1,
+                };
+                match problem.atlas(&arm, look, None) {
+                    Some(atlas) => problem.fit(&arm, &atlas, &[], Some(study.seed)),
+                    None => return Ok(None),
+                }
+            }
+        };
+        let Some(atlas) = problem.atlas(&arm, self.report_look(), Some(&limits)) else {
+            return Ok(None);
+        };
+        let measures = problem.measures(&arm, &atlas, &limits);
+        Ok(Some(Reference {
+            given: self.question.limits.is_some(),
+            limits,
+            measures,
+            verdict,
+            arm,
+        }))
+    }
+}

@@ -1,0 +1,278 @@
+//! One robot: its atlas, the best limits for it, its merits.
+
+use super::arm::Arm;
+use super::link_space::{LinkSpace, Links};
+use super::measures::{Measures, Merit};
+use crate::design::TaskSpace;
+use crate::objective::{DesignSpace, HybridObjective};
+use crate::optimiser::{Candidate, Reach, climb};
+use crate::sampling::stream;
+use crate::workspace::hybrid::{
+    Atlas, AtlasRecipe, AtlasSettings, Region, Rule, SamplePlan, Sampling,
+};
+use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
+use rand::Rng;
+use serde::{Deserialize, Serialize};
+use std::f64::consts::{PI, TAU};
+use std::sync::atomic::AtomicBool;
+
+/// What a robot must keep to.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Bounds {
+    /// Most total length L, in reaches.
+    pub most_length: f64,
+    /// Least S_0max as a share of the ball of the reach: without it a share of almost nothing
+    /// could win.
+    pub least_fill: f64,
+    /// Least W₀ / S_0max.
+    pub least_pre_failure_share: f64,
+}
+
+/// The question that a search for robots answers.
+#[derive(Clone, Debug)]
+pub struct DesignProblem {
+    /// Which robots.
+    pub links: LinkSpace,
+    /// Which joints may lock, and how far beyond their limits.
+    pub failures: FailureSet,
+    /// Narrowest limits of a joint, radians.
+    pub min_width: f64,
+    /// What is made as large as possible.
+    pub merit: Merit,
+    /// What a robot must keep to.
+    pub bounds: Bounds,
+    /// How manifolds are traced.
+    pub atlas: AtlasSettings,
+}
+
+/// A robot with limits and what they came to on the samples it was searched on.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Draft {
+    /// Links of reach 1.
+    pub links: Links,
+    /// Limits of every joint.
+    pub limits: ArtificialLimits,
+    /// Its merits, without standard errors.
+    pub measures: Measures,
+    /// The merit searched for, less what it misses of the bounds.
+    pub score: f64,
+}
+
+/// Which samples a robot is looked at with. The same for all robots that are to be compared.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Look {
+    /// Number of task points.
+    pub samples: u32,
+    /// Seed of their shift.
+    pub seed: u64,
+    /// Independent shifts; 1 where no standard error is asked for.
+    pub replicates: u32,
+}
+
+/// How far a sampled region reaches beyond the workspace: round-off must not cut it.
+const MARGIN: f64 = 1e-3;
+
+/// Random limits from which a fit from scratch begins, and how many of the best it climbs from.
+const DRAWS: usize = 48;
+/// See [`DRAWS`].
+const CLIMBED: usize = 3;
+
+/// Parts of the circle in which good limits are looked for.
+const BINS: usize = 72;
+
+/// Steps of the sweeps of a refit, radians.
+const STEPS: [f64; 2] = [0.1, 0.04];
+
+/// Power by which falling short of a bound lowers a score.
+const PENALTY: i32 = 3;
+
+impl DesignProblem {
+    /// What the tool is asked to reach.
+    pub fn task(&self) -> TaskSpace {
+        self.links.task()
+    }
+
+    /// The atlas of `arm`; `None` if there is nothing to trace. For more than one degree of
+    /// redundancy it is more accurate if it is for `limits` alone.
+    pub fn atlas(&self, arm: &Arm, look: Look, limits: Option<&ArtificialLimits>) -> Option<Atlas> {
+        let (task, extent) = (self.task(), &arm.extent);
+        let margin = MARGIN * extent.reach;
+        let plan = SamplePlan {
+            task,
+            region: Region {
+                radius: extent.radius + margin,
+                lower: extent.lower - margin,
+                upper: extent.upper + margin,
+                reach: extent.reach + margin,
+            },
+            sampling: Sampling::Lattice {
+                samples: look.samples,
+                replicates: look.replicates,
+            },
+            seed: look.seed,
+        };
+        let recipe = AtlasRecipe::new(&arm.robot, plan, self.atlas).ok()?;
+        let recipe = match limits {
+            Some(limits) if arm.robot.degree_of_redundancy(task) > 1 => recipe.focused(limits),
+            _ => recipe,
+        };
+        let never = AtomicBool::new(false);
+        recipe.build(None, &never, &|_, _| {}).ok()
+    }
+
+    /// The box of limits of `arm`.
+    pub fn limit_space(&self, arm: &Arm) -> DesignSpace {
+        DesignSpace::of_robot(&arm.robot, self.task(), self.min_width)
+    }
+
+    /// Fits limits to `links` on fresh samples, from the best of `starts`, and from scratch too if
+    /// that is wanted.
+    pub fn draft(
+        &self,
+        links: &Links,
+        starts: &[ArtificialLimits],
+        look: Look,
+        from_scratch: bool,
+    ) -> Option<Draft> {
+        let arm = Arm::of_links(&self.links, links)?;
+        let atlas = self.atlas(&arm, look, None)?;
+        let limits = self.fit(&arm, &atlas, starts, from_scratch.then_some(look.seed));
+        Some(self.draft_of(links, &arm, &atlas, limits))
+    }
+
+    /// `links` with given limits, measured on fresh samples.
+    pub fn measured(
+        &self,
+        links: &Links,
+        limits: &ArtificialLimits,
+        look: Look,
+    ) -> Option<Draft> {
+        let arm = Arm::of_links(&self.links, links)?;
+        let atlas = self.atlas(&arm, look, Some(limits))?;
+        Some(self.draft_of(links, &arm, &atlas, limits.clone()))
+    }
+
+    /// `links` with `limits`, measured over `atlas`.
+    pub fn draft_of(
+        &self,
+        links: &Links,
+        arm: &Arm,
+        atlas: &Atlas,
+        limits: ArtificialLimits,
+    ) -> Draft {
+        let measures = self.measures(arm, atlas, &limits);
+        Draft {
+            score: self.score(&measures),
+            links: links.clone(),
+            limits,
+            measures,
+        }
+    }
+
+    /// The best limits found on `atlas`.
+    pub fn fit(
+        &self,
+        arm: &Arm,
+        atlas: &Atlas,
+        starts: &[ArtificialLimits],
+        scratch: Option<u64>,
+    ) -> ArtificialLimits {
+        let space = self.limit_space(arm);
+        let failures = self.failures.clone();
+        let objective = HybridObjective::new(space.clone(), atlas, failures, Rule::Definition);
+        let near: Vec<Reach> = STEPS.map(Reach::Near).to_vec();
+        let mut found: Vec<Candidate> = Vec::new();
+        let scored = starts.iter().map(|limits| Candidate {
+            x: space.point(limits),
+            score: objective.score_of(&space.design(&space.point(limits))),
+        });
+        if let Some(start) = scored.reduce(|a, b| if b.score > a.score { b } else { a }) {
+            found.push(climb(&objective, start.x, &near));
+        }
+        if let Some(seed) = scratch {
+            let mut drawn = self.random_limits(arm, atlas, &objective, seed);
+            drawn.sort_by(|a, b| b.score.total_cmp(&a.score));
+            let sweeps = [&[Reach::Whole][..], &near].concat();
+            let starts = drawn.into_iter().take(CLIMBED);
+            found.extend(starts.map(|start| climb(&objective, start.x, &sweeps)));
+        }
+        let best = found.into_iter().reduce(|a, b| if b.score > a.score { b } else { a });
+        match best {
+            Some(best) => space.design(&best.x).limits,
+            None => ArtificialLimits::free(arm.robot.joints()),
+        }
+    }
+
+    /// Limits of random widths around the angles that most task points can do without.
+    fn random_limits(
+        &self,
+        arm: &Arm,
+        atlas: &Atlas,
+        objective: &HybridObjective,
+        seed: u64,
+    ) -> Vec<Candidate> {
+        let space = self.limit_space(arm);
+        let coverage = atlas.coverage(BINS);
+        let mut rng = stream(seed, u64::MAX);
+        let mut limit = |shares: &Vec<f64>| {
+            let best = (0..BINS).fold(0, |a, b| if shares[b] > shares[a] { b } else { a });
+            // The share at a random place decides how far the limits may reach.
+            let [place, width]: [f64; 2] = std::array::from_fn(|_| rng.random());
+            let least = shares[best] * place;
+            let wide = |step: isize| {
+                let next = |k: usize| (best as isize + step * k as isize).rem_euclid(BINS as isize);
+                (1..BINS).find(|&k| shares[next(k) as usize] < least).unwrap_or(BINS)
+            };
+            let [down, up] = [wide(-1), wide(1)].map(|k| (k as f64 - 0.5) * TAU / BINS as f64);
+            let centre = -PI + (best as f64 + 0.5) * TAU / BINS as f64;
+            if down + up >= TAU || width < 0.1 && shares[best] > 0.5 {
+                return JointLimit::FREE;
+            }
+            JointLimit::new(centre - down * width.sqrt(), centre + up * width.sqrt())
+        };
+        (0..DRAWS)
+            .map(|_| {
+                let limits = ArtificialLimits::new(coverage.iter().map(&mut limit).collect());
+                let x = space.point(&limits);
+                let score = objective.score_of(&space.design(&x));
+                Candidate { x, score }
+            })
+            .collect()
+    }
+
+    /// `limits` with both ends at multiples of `step` (radians), no narrower than allowed.
+    pub fn rounded_limits(&self, limits: &ArtificialLimits, step: f64) -> ArtificialLimits {
+        let round = |limit: &JointLimit| {
+            if limit.is_full() {
+                return JointLimit::FREE;
+            }
+            let [lower, upper] = [limit.lower, limit.upper].map(|end| (end / step).round() * step);
+            let missing = (self.min_width - (upper - lower)).max(0.0);
+            JointLimit::new(lower, upper + (missing / step - 1e-9).ceil().max(0.0) * step)
+        };
+        ArtificialLimits::new(limits.joints().iter().map(round).collect())
+    }
+
+    /// All merits of `arm` with `limits` over `atlas`.
+    pub fn measures(&self, arm: &Arm, atlas: &Atlas, limits: &ArtificialLimits) -> Measures {
+        let sizes = atlas.sizes(limits, &self.failures, Rule::Definition);
+        Measures::new(&sizes, arm.length, arm.extent.reach, self.task())
+    }
+
+    /// The merit searched for, lowered for every bound that is missed.
+    pub fn score(&self, measures: &Measures) -> f64 {
+        measures.merit(self.merit).value * self.discount(measures)
+    }
+
+    /// 1 for a robot that keeps to all bounds, less for others.
+    pub fn discount(&self, measures: &Measures) -> f64 {
+        let short = |value: f64, least: f64| match value < least {
+            true => (value / least).max(0.0).powi(PENALTY),
+            false => 1.0,
+        };
+        let bounds = &self.bounds;
+        short(measures.fill.value, bounds.least_fill)
+            * short(measures.pre_failure_share.value, bounds.least_pre_failure_share)
+            * short(bounds.most_length / measures.length.max(f64::MIN_POSITIVE), 1.0)
+    }
+}

@@ -1,0 +1,18 @@
+//! Robot design search: link parameters and artificial limits together.
+mod arm;
+mod assessment;
+mod link_space;
+mod measures;
+mod pareto;
+mod run;
+mod search;
+mod seeds;
+
+pub use arm::Arm;
+pub use assessment::{Bounds, DesignProblem, Draft, Look};
+pub use link_space::{Column, Constants, LinkRow, LinkSpace, Links, Parameter, total_length};
+pub use measures::{Measures, Merit};
+pub use pareto::{FrontRobot, ParetoSearch, ParetoSettings};
+pub use run::{Generation, Stage};
+pub use search::{Finalist, REPLICATES, Synthesis, SynthesisSettings};
+pub use seeds::{Purpose, sample_seed};
