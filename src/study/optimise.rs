@@ -34,6 +34,9 @@ const REFINING_SWEEPS: usize = 5;
 /// climbers that stall on one ridge at different places show each other its direction.
 const SPREAD: f64 = 0.01;
 
+/// Scores from this share of the best one on count as equal to it.
+const EQUAL: f64 = 0.999;
+
 /// What is searched, and how far it pays to search.
 pub(super) struct Terms<'a> {
     pub space: &'a DesignSpace,
@@ -140,6 +143,8 @@ impl Terms<'_> {
 /// The best design found and how.
 pub(super) struct Optimum {
     pub design: Design,
+    /// It and the others whose score is the same to [`EQUAL`].
+    pub equals: Vec<Design>,
     /// The stages in order, at least one.
     pub stages: Vec<Record>,
 }
@@ -216,8 +221,11 @@ pub(super) fn search(
         candidates = ended.candidates;
         stages.push(ended.record);
     }
+    let best = candidates[0].score;
+    let equals = candidates.iter().filter(|c| c.score >= best * EQUAL);
     Ok(Optimum {
         design: terms.space.design(&candidates[0].x),
+        equals: equals.map(|c| terms.space.design(&c.x)).collect(),
         stages,
     })
 }

@@ -94,6 +94,36 @@ fn find(
     Ok((optimum, None))
 }
 
+/// Links this far apart, as a share of the total length, are different robots.
+const APART: f64 = 0.03;
+
+/// The warning that the optimum is one of a whole family of robots.
+fn ridge(optimum: &Optimum) -> Option<String> {
+    let best = &optimum.design.lengths;
+    let total: f64 = best.iter().sum();
+    let range = |link: usize| {
+        let lengths = optimum.equals.iter().map(|design| design.lengths[link]);
+        lengths.fold([f64::INFINITY, f64::NEG_INFINITY], |[low, high], length| {
+            [low.min(length), high.max(length)]
+        })
+    };
+    let ranges: Vec<[f64; 2]> = (0..best.len()).map(range).collect();
+    let is_apart = |[low, high]: &[f64; 2]| high - low > APART * total;
+    if !ranges.iter().any(is_apart) {
+        return None;
+    }
+    let all = (1..).zip(&ranges).map(|(link, [low, high])| {
+        format!("l_{link} from {low:.2} to {high:.2} m")
+    });
+    Some(format!(
+        "The optimum is a flat ridge: {} robots with the same score to 0.1 % were found ({}). Along \
+         such a ridge robots may degenerate, down to workspaces of no area. Ask for limits with a \
+         least width (`min_width_deg`), or choose among them by another measure.",
+        optimum.equals.len(),
+        all.collect::<Vec<String>>().join(", ")
+    ))
+}
+
 /// A study whose search, if any, is over.
 struct Outcome<'a> {
     study: &'a Study,
@@ -132,6 +162,7 @@ impl Outcome<'_> {
         tell(3, "writing the report");
         let found = self.optimum.is_some();
         let mut notes = size_notes(&sizes, &self.joint_limits, &self.study.design.robot, found);
+        notes.extend(self.optimum.as_ref().and_then(ridge));
         notes.extend(self.surrogate.iter().flat_map(SurrogateTrace::notes));
         let finding = Finding {
             study: self.study,

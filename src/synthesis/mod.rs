@@ -7,6 +7,7 @@ mod pareto;
 mod run;
 mod search;
 mod seeds;
+mod sensitivity;
 
 pub use arm::Arm;
 pub use assessment::{Bounds, DesignProblem, Draft, Look};
@@ -16,3 +17,4 @@ pub use pareto::{FrontRobot, ParetoSearch, ParetoSettings};
 pub use run::{Generation, Stage};
 pub use search::{Finalist, REPLICATES, Synthesis, SynthesisSettings};
 pub use seeds::{Purpose, sample_seed};
+pub use sensitivity::{ParameterSensitivity, Perturbed, Tolerances};

@@ -21,6 +21,8 @@ pub enum Purpose {
     Report,
     /// The check by inverse kinematics.
     Check,
+    /// Sensitivity to tolerances.
+    Sensitivity,
 }
 
 /// The seed of the samples for `purpose` number `number` in a search with the given seed.
