@@ -41,7 +41,7 @@ fn studies_without_artificial_limits_have_no_margin() {
     let surrogate = "[estimator]\nmethod = 'surrogate'\n";
     for (kind, rest, hint) in [
         ("train", "[surrogate]\nmethod = 'arcs'", "surrogate"),
-        ("optimise", surrogate, "method = \"exact\""),
+        ("optimise", surrogate, "method = \"surrogate\""),
         ("singularities", "", "no artificial limits"),
         ("largest-manifold", "", "no artificial limits"),
         ("failure-experiment", "", "no artificial limits"),
@@ -57,12 +57,15 @@ fn studies_without_artificial_limits_have_no_margin() {
 #[test]
 fn prismatic_joints_have_no_margin() {
     let rows = "name = 'r'\nconvention = 'standard'\njoints = [\
-        { kind = 'revolute', a = 1.0 }, { kind = 'prismatic', alpha_deg = 90.0 },\
-        { kind = 'revolute', a = 1.0 } ]\n\
-        [physical_limits]\nlower_deg = [-180, -180]\nupper_deg = [180, 180]\n\
+        { kind = 'revolute', alpha_deg = 90, a = 1.0 }, { kind = 'prismatic', alpha_deg = 90 },\
+        { kind = 'revolute', alpha_deg = 60, a = 1.0 }, { kind = 'revolute', a = 1.0 } ]\n\
+        [physical_limits]\nlower_deg = [-180, -180, -180]\nupper_deg = [180, 180, 180]\n\
         lower = [0.0]\nupper = [1.0]\n";
-    let limits = "[limits]\nlower_deg = [0, 0]\nupper_deg = [9, 9]\nlower = [0.1]\nupper = [0.2]\n";
-    let (key, message) = study(rows, &text("estimate", "margin_deg = 1", limits)).unwrap_err();
+    let limits = "[limits]\nlower_deg = [0, 0, 0]\nupper_deg = [9, 9, 9]\n\
+        lower = [0.1]\nupper = [0.2]\n";
+    let spatial = |margin| text("estimate", margin, limits).replace("planar", "spatial");
+    assert!(study(rows, &spatial("margin_deg = 0")).is_ok());
+    let (key, message) = study(rows, &spatial("margin_deg = 1")).unwrap_err();
     assert_eq!(key, "task.margin_deg", "{message}");
     assert!(message.contains("joint 2 is prismatic"), "{message}");
 }
