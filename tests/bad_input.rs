@@ -192,6 +192,19 @@ fn failure_sets() {
 }
 
 #[test]
+fn margins() {
+    let bad = |value: &str, hints: &[&str]| {
+        let text = format!("failures = \"any\"\nmargin_deg = {value}");
+        assert_bad_study("failures = \"any\"", &text, 7, "task.margin_deg", hints);
+    };
+    bad("-1", &["from 0 to 90 degrees"]);
+    bad("91", &["from 0 to 90 degrees"]);
+    bad("nan", &["from 0 to 90 degrees"]);
+    bad("\"2\"", &["expected a number"]);
+    bad("[1, 1, 1]", &["expected a number"]);
+}
+
+#[test]
 fn a_missing_design_file() {
     let hints = ["nowhere.toml", "relative to the study file"];
     assert_bad_study("arm.toml", "nowhere.toml", 2, "design", &hints);

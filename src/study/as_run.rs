@@ -88,6 +88,7 @@ struct ValidateTable {
 struct Task {
     space: TaskSpace,
     failures: Failures,
+    margin_deg: Option<f64>,
 }
 
 #[derive(Serialize)]
@@ -127,6 +128,7 @@ impl<'a> AsRun<'a> {
             task: Task {
                 space: study.task,
                 failures: failures(&study.failures, study.design.robot.joints()),
+                margin_deg: has_margin(&study.question).then_some(study.margin_deg),
             },
             limits: None,
             estimator: Some(EstimatorTable::new(&study.estimator, folder)),
@@ -254,6 +256,14 @@ impl ValidateTable {
     }
 }
 
+/// Whether what is asked depends on where joints lock beyond their limits.
+fn has_margin(question: &Question) -> bool {
+    matches!(
+        question,
+        Question::Estimate(_) | Question::Optimise(_) | Question::Manifolds(_)
+    )
+}
+
 fn failures(set: &FailureSet, joints: usize) -> Failures {
     let numbers: Vec<usize> = set.numbers().collect();
     if numbers.len() == joints {
@@ -294,7 +304,7 @@ mod tests {
     }
 
     const ESTIMATE: &str = "kind = 'estimate'\ntitle = 'A \"title\"'\ndesign = 'r.toml'\n\
-        seed = 18446744073709551615\n[task]\nspace = 'planar-position'\nfailures = [3, 1]\n\
+        seed = 18446744073709551615\n[task]\nspace = 'planar-position'\nfailures = [3, 1]\nmargin_deg = 2.3\n\
         [limits]\nlower_deg = [-18.21, -180, 0.1]\nupper_deg = [18.21, 180, 0.1]\n\
         [estimate]\nradii = [0, 1e-3, 2.5]\n[report]\nformats = []\nfigures = false\n";
     const ASCENT: &str = "kind = 'optimise'\ndesign = 'r.toml'\n\
@@ -375,6 +385,7 @@ mod tests {
         for key in [
             "seed = 1",
             "failures = \"any\"",
+            "margin_deg = 0",
             "restarts = 32",
             "figures = true",
         ] {

@@ -56,6 +56,9 @@ const KINDS: [(&str, Option<Kind>); 10] = [
 /// Largest angle in a file, degrees: ten turns. Beyond, the fraction of a turn loses its digits.
 pub(super) const MAX_DEGREES: f64 = 3600.0;
 
+/// Largest margin beyond artificial limits, degrees.
+const MAX_MARGIN: f64 = 90.0;
+
 /// Largest length in a file, metres; far above any arm, far below where squares overflow.
 pub(super) const MAX_LENGTH: f64 = 1e6;
 
@@ -68,6 +71,7 @@ pub struct StudyFile {
     pub(super) seed: Option<u64>,
     pub(super) space: Item<TaskSpace>,
     pub(super) failures: Option<Item<Failures>>,
+    pub(super) margin_deg: Option<Item<f64>>,
     pub(super) limits: Option<LimitsTable>,
     pub(super) estimator: EstimatorTable,
     pub(super) estimate: Option<Item<EstimateTable>>,
@@ -159,7 +163,7 @@ fn read(root: &Table) -> Option<StudyFile> {
     root.require("task", "[task]` with `space = \"planar-position\"");
     let kind = read_kind(root);
     let design = root.text("design");
-    let task = root.table("task", &["space", "failures"]);
+    let task = root.table("task", &["space", "failures", "margin_deg"]);
     let space = task.as_ref().and_then(read_space);
     let estimator = root.table("estimator", &["method", "tolerance", "hybrid", "surrogate"]);
     let report = root.table("report", &["formats", "figures"]);
@@ -167,6 +171,9 @@ fn read(root: &Table) -> Option<StudyFile> {
         title: root.text("title").map(|item| item.value),
         seed: root.integer("seed", 0..=u64::MAX).map(|item| item.value),
         failures: task.as_ref().and_then(read_failures),
+        margin_deg: task
+            .as_ref()
+            .and_then(|table| table.number("margin_deg", 0.0..=MAX_MARGIN, " degrees")),
         limits: read_limits(root),
         estimator: EstimatorTable {
             method: estimator.as_ref().and_then(read_method),

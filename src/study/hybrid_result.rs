@@ -37,6 +37,7 @@ impl HybridFinding<'_> {
             "status": status(self.optimum),
             "size": self.size(),
             "workspaces": workspaces(self.sizes, &study.failures),
+            "margin_deg": study.margin_deg,
             "limits_deg": limits_deg(self.limits),
         });
         if !self.limits.lower.is_empty() {

@@ -99,6 +99,7 @@ impl ManifoldFinding<'_> {
             let prone = self.study.failures.contains(joint);
             json!({ "joint": joint, "prone": prone, "tolerated": survives })
         });
+        result["margin_deg"] = json!(self.study.margin_deg);
         result["locks"] = locks.collect();
         result["reached_within_limits"] = json!(tolerance.before_failure.contains(0.0));
         result["fault_tolerant"] = json!(tolerance.rotation_set.contains(0.0));

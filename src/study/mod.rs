@@ -23,6 +23,7 @@ mod location_result;
 mod manifold_report;
 mod manifold_result;
 mod manifold_run;
+mod margin;
 mod optimise;
 mod parts;
 mod picture;

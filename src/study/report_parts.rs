@@ -9,10 +9,16 @@ use crate::workspace::{ArtificialLimits, WorkspaceSizes};
 /// The failures in words.
 pub(super) fn failures_label(study: &Study) -> String {
     let numbers: Vec<String> = study.failures.numbers().map(|j| j.to_string()).collect();
-    if numbers.len() == study.design.robot.joints() {
+    let which = if numbers.len() == study.design.robot.joints() {
         "any single joint".into()
     } else {
         format!("one of the joints {}", numbers.join(", "))
+    };
+    let margin = study.margin_deg;
+    if margin > 0.0 {
+        format!("{which}, up to {margin}° beyond its artificial limits")
+    } else {
+        which
     }
 }
 

@@ -41,6 +41,7 @@ impl Finding<'_> {
             "status": self.status(),
             "size": self.size(),
             "workspaces": workspaces(self.sizes, &study.failures),
+            "margin_deg": study.margin_deg,
             "limits_deg": self.limits_deg(),
             "links": { "lengths": self.arm.lengths, "unit": "m" },
             "evaluations": self.optimum.map_or(0, Optimum::evaluations),

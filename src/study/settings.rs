@@ -31,8 +31,11 @@ pub struct Study {
     pub seed: u64,
     /// What the tool is asked to reach.
     pub task: TaskSpace,
-    /// The joints F that may lock.
+    /// The joints F that may lock, and how far beyond their limits: `margin_deg`, in radians.
     pub failures: FailureSet,
+    /// How far beyond its artificial limits a joint may come to rest when it locks, degrees,
+    /// default 0.
+    pub margin_deg: f64,
     /// What is asked.
     pub question: Question,
     /// How workspaces are measured; a study of manifolds measures none.

@@ -8,7 +8,7 @@ use super::settings::{
 };
 use super::singular_settings::LargestManifold;
 use super::surrogate_check::Subject;
-use super::{hybrid_table, limits, pose_table, serve, singular_table, synthesis_check};
+use super::{hybrid_table, limits, margin, pose_table, serve, singular_table, synthesis_check};
 use crate::diagnostic::{Item, Place, Problem, Problems};
 use crate::workspace::FailureSet;
 
@@ -25,7 +25,9 @@ pub(super) fn study(
     problems: &Problems,
     design: Design,
 ) -> Option<Study> {
+    let margin_deg = margin::degrees(file, problems, &design.robot);
     let failures = failures(file, problems, design.robot.joints());
+    let failures = failures.with_margin(margin_deg.to_radians());
     let subject = Subject {
         file,
         problems,
@@ -72,6 +74,7 @@ pub(super) fn study(
         seed: file.seed.unwrap_or(1),
         task: file.space.value,
         failures,
+        margin_deg,
         question: question?,
         estimator,
         report: report(file, problems),

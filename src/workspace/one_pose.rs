@@ -3,7 +3,8 @@
 //! The same sets as in the estimates of sizes, for a single pre-image at full accuracy: with M the
 //! pre-image inside the physical limits, Θ_i its joint ranges and T the θ₁-image of its part inside
 //! A₂ × … × A_n, a pose turned by β about joint 1 is reached before a failure if β ∈ A₁ − T, after
-//! a lock of joint 1 if A₁ − β ⊂ Θ₁, and after a lock of joint i ≥ 2 if A_i ⊂ Θ_i.
+//! a lock of joint 1 if A₁ − β ⊂ Θ₁, and after a lock of joint i ≥ 2 if A_i ⊂ Θ_i; a margin enlarges
+//! the A_i of the latter two, where joints lock.
 
 use super::{ArtificialLimits, FailureSet};
 use crate::angle::{AngleSet, Arc};
@@ -29,7 +30,7 @@ pub struct PoseTolerance {
 
 impl PoseTolerance {
     /// Judges the pose with the given pre-image. `physical` holds the physical limits of every
-    /// joint as arcs of internal joint variables; those of joint 1 are not used.
+    /// joint as arcs of internal joint variables; those of joint 1 only bound where it may lock.
     pub fn of(
         pre_image: &PreImage,
         physical: &[Arc],
@@ -37,14 +38,20 @@ impl PoseTolerance {
         failures: &FailureSet,
     ) -> PoseTolerance {
         let arcs: Vec<Arc> = limits.joints().iter().map(|limit| limit.arc()).collect();
+        let locks: Vec<Arc> = limits
+            .joints()
+            .iter()
+            .zip(physical)
+            .map(|(limit, physical)| limit.enlarged_within(failures.margin(), physical).arc())
+            .collect();
         let ranges = ranges_within(&pre_image.manifolds, physical);
         let both: Vec<[Arc; 2]> = arcs.iter().zip(physical).map(|(a, p)| [*a, *p]).collect();
         let inside = images(&pre_image.manifolds, &both);
         let before_failure = inside[0].mirrored().sum(&arcs[0]);
-        let after_lock_of_1 = ranges[0].erosion(&arcs[0]).mirrored();
+        let after_lock_of_1 = ranges[0].erosion(&locks[0]).mirrored();
         let mut survives: Vec<bool> = ranges
             .iter()
-            .zip(&arcs)
+            .zip(&locks)
             .map(|(range, arc)| range.contains_arc(arc))
             .collect();
         survives[0] = after_lock_of_1.contains(0.0);
@@ -159,8 +166,9 @@ mod tests {
         let mut search = search(&lengths);
         let limits = [[-18.21, 18.21], [-111.322, 111.322], [-111.322, 111.322]];
         let limits = ArtificialLimits::from_degrees(&limits);
-        let failures = FailureSet::any(3);
         for (k, r) in [0.3, 0.9, 1.0, 1.2, 1.5, 2.9].into_iter().enumerate() {
+            let margin = 0.02 * (k % 3) as f64;
+            let failures = FailureSet::any(3).with_margin(margin);
             let mut generator = crate::sampling::stream(1, k as u64);
             let pre_image = search.find(&Isometry3::translation(r, 0.0, 0.0), &mut generator);
             let found = PoseTolerance::of(&pre_image, &[Arc::FULL; 3], &limits, &failures);

@@ -348,7 +348,7 @@ impl Atlas {
         rule: Rule,
     ) -> Limits16 {
         let limits = &self.within_physical(limits);
-        Limits16::new(limits, failures, rule, &self.slabs, self.physical[0])
+        Limits16::new(limits, failures, rule, &self.slabs, &self.physical)
     }
 
     /// Whether no joint has physical limits.

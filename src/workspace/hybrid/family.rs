@@ -24,6 +24,8 @@ pub(super) struct Family {
     /// Half the distance between slices along the joint, steps. The joint is constant on a
     /// slice, so the width of entry stays linear.
     slab: f64,
+    /// How far beyond its limits the joint may lock, steps.
+    margin: i32,
     /// Widths in steps, ascending.
     pub widths: Vec<i32>,
 }
@@ -47,6 +49,7 @@ impl Family {
             growth,
             anchor: quantise(anchor),
             slab: slab / STEP,
+            margin: 0,
             widths: widths
                 .iter()
                 .map(|width| (width / STEP).round() as i32)
@@ -54,7 +57,16 @@ impl Family {
         }
     }
 
-    /// Number of widths up to and with the largest at which the limits still lie in `range`.
+    /// The same limits of a joint that may lock up to `margin` radians beyond them.
+    pub fn with_margin(self, margin: f64) -> Family {
+        Family {
+            margin: (margin / STEP).round() as i32,
+            ..self
+        }
+    }
+
+    /// Number of widths up to and with the largest at which the limits, with the margin at both
+    /// ends, still lie in `range`.
     pub fn fitting(&self, range: &[Arc16]) -> usize {
         let largest = range.iter().filter_map(|arc| self.room(*arc)).max();
         largest.map_or(0, |room| {
@@ -62,14 +74,16 @@ impl Family {
         })
     }
 
-    /// The largest width at which the limits lie in `arc`.
+    /// The largest width at which the limits, with the margin at both ends, lie in `arc`.
     fn room(&self, arc: Arc16) -> Option<i32> {
         if arc.is_full() {
             return Some(65_536);
         }
-        let below = i32::from(self.anchor.wrapping_sub(arc.start));
-        let above = i32::from(arc.width) - below;
-        (above >= 0).then(|| match self.growth {
+        // Steps from the anchor to the ends of the arc that are left inside the margin. The anchor
+        // lies `below + margin` behind the arc's start, and in the arc if that is within its width.
+        let below = i32::from(self.anchor.wrapping_sub(arc.start)) - self.margin;
+        let above = i32::from(arc.width) - below - 2 * self.margin;
+        (below.min(above) >= 0).then(|| match self.growth {
             Growth::Lower => below,
             Growth::Upper => above,
             Growth::Both => 2 * below.min(above),

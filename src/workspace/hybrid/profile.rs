@@ -2,7 +2,7 @@
 //!
 //! As the limits of joint j grow from width 0 on, every part of a pre-image inside the box of
 //! the *other* joints enters at a known width, and the pose is lost at the width at which A_j
-//! leaves Θ_j. So one walk along the pre-image serves all widths, and the result at each of them
+//! leaves Θ_j (with a margin: at which A_j enlarged by it does). So one walk along the pre-image serves all widths, and the result at each of them
 //! is the very number that scoring these limits alone would give (to round-off).
 
 use super::atlas::Atlas;
@@ -12,7 +12,7 @@ use super::family::{Family, Growth};
 use super::score::{Limits16, Rule, covers};
 use super::turn16::{Arc16, STEP, angle_set};
 use crate::angle::{AngleSet, Arc};
-use crate::workspace::{ArtificialLimits, FailureSet};
+use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use rayon::prelude::*;
 use std::f64::consts::TAU;
 
@@ -38,6 +38,7 @@ impl Atlas {
                 .collect()
         } else {
             let family = Family::new(limits, joint, growth, widths, self.slabs[joint]);
+            let family = family.with_margin(failures.margin());
             let rest = fixed.rest.without(joint);
             self.views()
                 .map(|view| other_joint(&view, &fixed, &rest, &family))
@@ -74,11 +75,13 @@ fn first_joint(view: &BlockView, fixed: &Limits16, widths: &[f64]) -> Vec<f64> {
         };
         let image = image.mirrored();
         for (sum, &width) in sums.iter_mut().zip(widths) {
-            if width > room {
+            let lock = JointLimit::around(0.0, width).enlarged(fixed.margin);
+            if lock.width() > room {
                 break;
             }
             let limit = Arc::new(-0.5 * width, width);
-            *sum += pose.weight * fixed.overlap(&limit, &image, after.as_ref());
+            let after = after.as_ref().map(|range| (range, lock.arc()));
+            *sum += pose.weight * fixed.overlap(&limit, &image, after);
         }
     }
     sums
@@ -117,6 +120,7 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
         } else {
             collect(view, pose, rest, family, &mut bins[..fits]);
             let after = fixed.prone[0].then(|| angle_set(first));
+            let after = after.as_ref().map(|range| (range, fixed.first_lock));
             let mut last = 0.0;
             let mut image = AngleSet::empty();
             for (bin, step) in bins[..fits].iter_mut().zip(&mut steps) {
@@ -126,7 +130,7 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
                 // Mirrored from the start, as the difference A₁ − T wants it.
                 let mirrored = bin.drain(..).map(|arc| arc.mirrored());
                 image = image.union(&AngleSet::from_arcs(mirrored));
-                let measure = pose.weight * fixed.overlap(&fixed.first, &image, after.as_ref());
+                let measure = pose.weight * fixed.overlap(&fixed.first, &image, after);
                 *step += measure - last;
                 last = measure;
             }
@@ -274,15 +278,16 @@ impl Limits16 {
     ) -> bool {
         ranges.enumerate().all(|(k, range)| {
             let joint = k + 1;
-            joint == except || !self.prone[joint] || covers(range, self.arcs[joint])
+            joint == except || !self.prone[joint] || covers(range, self.locks[joint])
         })
     }
 
-    /// |B₀ ∩ B₁| for A₁ = `limit`, the mirrored image −T and the range Θ₁ (if joint 1 may lock).
-    fn overlap(&self, limit: &Arc, mirrored: &AngleSet, range: Option<&AngleSet>) -> f64 {
+    /// |B₀ ∩ B₁| for A₁ = `limit`, the mirrored image −T and, if joint 1 may lock, the range Θ₁
+    /// with the arc in which it may.
+    fn overlap(&self, limit: &Arc, mirrored: &AngleSet, after: Option<(&AngleSet, Arc)>) -> f64 {
         let before = mirrored.sum(limit);
-        match range {
-            Some(range) => before.overlap(&range.erosion(limit).mirrored()),
+        match after {
+            Some((range, lock)) => before.overlap(&range.erosion(&lock).mirrored()),
             None => before.measure(),
         }
     }

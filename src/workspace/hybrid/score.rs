@@ -4,6 +4,7 @@
 //! With A the limits, Θ the ranges and M the pre-image of the sample x at azimuth 0 [S4 §III.C]:
 //! - joint i ≥ 2 locked: A_i ⊂ Θ_i, whatever β;
 //! - joint 1 locked: B₁ = { β : A₁ − β ⊂ Θ₁ };
+//! - a margin m enlarges the A_i of these two conditions alone: a joint may lock that far beyond;
 //! - before a failure: B₀ = A₁ − T with T the θ₁-image of M inside A₂ × … × A_n;
 //! - B = B₀ ∩ B₁ if every i ≥ 2 passes.
 //!
@@ -34,10 +35,14 @@ pub enum Rule {
 /// Artificial limits prepared for scoring.
 #[derive(Clone, Debug)]
 pub(super) struct Limits16 {
-    /// Limits of every joint.
-    pub arcs: Vec<Arc16>,
+    /// Where every joint may lock: its limits, enlarged by the margin.
+    pub locks: Vec<Arc16>,
     /// A₁, exactly.
     pub first: Arc,
+    /// Where joint 1 may lock, exactly.
+    pub first_lock: Arc,
+    /// Margin beyond the limits, radians.
+    pub margin: f64,
     /// The box of the other joints.
     pub rest: Box16,
     /// Which joints may lock.
@@ -58,18 +63,19 @@ struct Physical {
 
 impl Limits16 {
     /// `slabs` is half the distance between slices along every joint: a slice stands for that
-    /// much to either side, so the box is widened by it.
+    /// much to either side, so the box is widened by it. `physical` holds the physical limits of
+    /// every joint, inside which `limits` lie.
     pub fn new(
         limits: &ArtificialLimits,
         failures: &FailureSet,
         rule: Rule,
         slabs: &[f64],
-        physical: Arc,
+        physical: &[Arc],
     ) -> Limits16 {
-        let arcs: Vec<Arc16> = limits
-            .joints()
-            .iter()
-            .map(|limit| Arc16::nearest(&limit.arc()))
+        let margin = failures.margin();
+        let locks = limits.joints().iter().zip(physical);
+        let locks: Vec<Arc> = locks
+            .map(|(limit, physical)| limit.enlarged_within(margin, physical).arc())
             .collect();
         let first = limits
             .joints()
@@ -81,18 +87,23 @@ impl Limits16 {
         });
         let rest = Box16::new(widened.enumerate().skip(1));
         Limits16 {
-            prone: (1..=arcs.len())
+            prone: (1..=locks.len())
                 .map(|joint| failures.contains(joint))
                 .collect(),
-            arcs,
+            first_lock: locks.first().copied().unwrap_or(Arc::FULL),
+            locks: locks.iter().map(Arc16::nearest).collect(),
             first,
+            margin,
             rest,
             rule,
-            physical: (!physical.is_full()).then(|| Physical {
-                allowed: physical,
-                gap: Arc::new(physical.end(), TAU - physical.width()),
-                slabs: slabs.to_vec(),
-            }),
+            physical: physical
+                .first()
+                .filter(|arc| !arc.is_full())
+                .map(|&arc| Physical {
+                    allowed: arc,
+                    gap: Arc::new(arc.end(), TAU - arc.width()),
+                    slabs: slabs.to_vec(),
+                }),
         }
     }
 
@@ -113,7 +124,7 @@ impl Limits16 {
                 view,
                 pose,
                 joint,
-                self.arcs[joint],
+                self.locks[joint],
                 &physical.gap,
                 physical.slabs[joint],
             ),
@@ -125,7 +136,7 @@ impl Limits16 {
         if self.physical.is_none() {
             return set;
         }
-        let joints = (1..self.arcs.len()).filter(|&joint| self.prone[joint]);
+        let joints = (1..self.locks.len()).filter(|&joint| self.prone[joint]);
         joints.fold(set, |set, joint| {
             if set.is_empty() {
                 set
@@ -142,17 +153,17 @@ impl Limits16 {
         if !self.first_fits(first) {
             return false;
         }
-        self.arcs[1..]
+        self.locks[1..]
             .iter()
             .zip(&self.prone[1..])
             .zip(ranges)
             .all(|((limit, prone), range)| !prone || covers(range, *limit))
     }
 
-    /// Whether some β lets A₁ lie in Θ₁, or joint 1 does not lock.
+    /// Whether some β lets all angles at which joint 1 may lock lie in Θ₁, or joint 1 does not lock.
     #[inline]
     pub fn first_fits(&self, range: &[Arc16]) -> bool {
-        !self.prone[0] || fits_somewhere(self.arcs[0], range)
+        !self.prone[0] || fits_somewhere(self.locks[0], range)
     }
 
     /// T: the θ₁ values of the pre-image inside the limits of the other joints.
@@ -180,7 +191,7 @@ impl Limits16 {
     /// B₁, with Θ₁ the range of joint 1.
     pub fn lock_of_1(&self, range: &[Arc16]) -> AngleSet {
         // β passes if A₁ − β ⊂ Θ₁: the mirror image of the erosion of Θ₁ by A₁.
-        angle_set(range).erosion(&self.first).mirrored()
+        angle_set(range).erosion(&self.first_lock).mirrored()
     }
 
     /// B₀, with T the image.

@@ -215,7 +215,7 @@ fn pose_measures(view: &BlockView, index: usize, limits: &Limits16) -> Vec<f64> 
         tolerant = tolerant.intersection(&limits.lock_of_1(first));
     }
     for (joint, range) in (1..).zip(ranges) {
-        let survives = if covers(range, limits.arcs[joint]) {
+        let survives = if covers(range, limits.locks[joint]) {
             limits.lock_of(view, pose, joint)
         } else {
             AngleSet::empty()

@@ -23,7 +23,7 @@ pub struct LockedJoints {
 impl LockedJoints {
     /// For position tasks.
     pub fn of_position(arm: PlanarArm<'_>) -> LockedJoints {
-        let limit = arm.limits.joints()[0];
+        let limit = arm.failures.lock_range(arm.limits.joints()[0]);
         LockedJoints {
             reach: annulus(arm.lengths),
             radii: radial_gate(arm.lengths, arm.limits, arm.failures),
@@ -38,12 +38,13 @@ impl LockedJoints {
     pub fn of_pose(arm: PlanarArm<'_>) -> LockedJoints {
         let wrist = Wrist::new(arm);
         let (first, n) = (wrist.limits.joints()[0], arm.lengths.len());
+        let [first, last] = [first, wrist.last].map(|limit| arm.failures.lock_range(limit));
         LockedJoints {
             reach: annulus(&wrist.lengths),
             radii: radial_gate(&wrist.lengths, &wrist.limits, &wrist.failures),
             joint_1: LockedJoint1::new(&wrist.lengths, first),
             joint_1_fails: arm.failures.contains(1),
-            joint_n: Some(LockedJoint1::new(&wrist.reversed_lengths, wrist.last)),
+            joint_n: Some(LockedJoint1::new(&wrist.reversed_lengths, last)),
             joint_n_fails: arm.failures.contains(n),
         }
     }

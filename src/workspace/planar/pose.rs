@@ -102,14 +102,12 @@ impl PlanarPose {
             error: 1e-12 * value,
         };
         let n = arm.lengths.len();
+        let lock = |joint: usize| arm.failures.lock_range(arm.limits.joints()[joint - 1]);
         let post_failure = (1..=n).map(|joint| match joint {
-            1 => scaled(
-                locked_base_area(&wrist.lengths, arm.limits.joints()[0]),
-                TAU,
-            ),
-            j if j == n => scaled(locked_base_area(&wrist.reversed_lengths, wrist.last), TAU),
+            1 => scaled(locked_base_area(&wrist.lengths, lock(1)), TAU),
+            j if j == n => scaled(locked_base_area(&wrist.reversed_lengths, lock(n)), TAU),
             j => {
-                let limit = arm.limits.joints()[j - 1];
+                let limit = lock(j);
                 exact(TAU * annulus_area(locked_joint_radii(&wrist.lengths, j, limit)))
             }
         });
@@ -395,7 +393,7 @@ impl Parts {
     fn fault_tolerant(arm: PlanarArm<'_>, wrist: &Wrist) -> Parts {
         let n = arm.lengths.len();
         let failing = |joint: usize, lengths: &[f64], limit: JointLimit| {
-            let locked = || LockedJoint1::new(lengths, limit);
+            let locked = || LockedJoint1::new(lengths, arm.failures.lock_range(limit));
             arm.failures.contains(joint).then(locked)
         };
         Parts {

@@ -97,7 +97,7 @@ impl PlanarPosition {
             error: ROUND_OFF * value,
         };
         let post_failure = (1..=arm.lengths.len()).map(|joint| {
-            let limit = arm.limits.joints()[joint - 1];
+            let limit = arm.failures.lock_range(arm.limits.joints()[joint - 1]);
             if joint == 1 {
                 PlanarPosition::locked_joint_1_size(arm.lengths, limit)
             } else {
@@ -247,7 +247,7 @@ impl PlanarPosition {
 
 impl Parts {
     fn fault_tolerant(arm: PlanarArm<'_>) -> Parts {
-        let joint_1 = arm.limits.joints()[0];
+        let joint_1 = arm.failures.lock_range(arm.limits.joints()[0]);
         let locked = || LockedJoint1::new(arm.lengths, joint_1);
         Parts {
             pre_failure: true,

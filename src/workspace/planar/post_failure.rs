@@ -54,7 +54,7 @@ fn rigid_link_range(a: f64, b: f64, limit: JointLimit) -> [f64; 2] {
     ]
 }
 
-/// Radii common to all W_j with j ≥ 2, j ∈ F.
+/// Radii common to all W_j with j ≥ 2, j ∈ F, joints locking up to the margin beyond their limits.
 pub(super) fn radial_gate(
     lengths: &[f64],
     limits: &ArtificialLimits,
@@ -62,7 +62,8 @@ pub(super) fn radial_gate(
 ) -> [f64; 2] {
     let mut gate = annulus(lengths);
     for joint in failures.numbers().filter(|&j| j >= 2) {
-        let [inner, outer] = locked_joint_radii(lengths, joint, limits.joints()[joint - 1]);
+        let lock = failures.lock_range(limits.joints()[joint - 1]);
+        let [inner, outer] = locked_joint_radii(lengths, joint, lock);
         gate = [gate[0].max(inner), gate[1].min(outer)];
     }
     gate

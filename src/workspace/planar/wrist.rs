@@ -33,7 +33,7 @@ impl Wrist {
             reversed_lengths: lengths.iter().rev().copied().collect(),
             lengths,
             limits: ArtificialLimits::new(joints[..n - 1].to_vec()),
-            failures: FailureSet::of(n - 1, &numbers),
+            failures: FailureSet::of(n - 1, &numbers).with_margin(arm.failures.margin()),
             reversed_limits: ArtificialLimits::new(reversed),
             last: joints[n - 1],
         }
