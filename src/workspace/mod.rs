@@ -2,6 +2,7 @@
 
 pub mod hybrid;
 mod limits;
+mod locked_joint_check;
 mod map;
 mod one_pose;
 pub mod planar;
@@ -9,6 +10,7 @@ mod size;
 mod spatial_map;
 
 pub use limits::{ArtificialLimits, FailureSet, JointLimit};
+pub use locked_joint_check::{LockedJointCheck, LockedJointEstimate};
 pub use map::{Ring, RingMap, ShareMap, WorkspaceMap};
 pub use one_pose::{PoseTolerance, limit_crossings, ranges_within};
 pub use size::{Estimate, WorkspaceSizes};
