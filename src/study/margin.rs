@@ -36,7 +36,7 @@ pub(super) fn degrees(file: &StudyFile, problems: &Problems, robot: &Robot) -> f
             "0",
             remove,
         ),
-        Kind::Estimate | Kind::Optimise | Kind::Manifolds => {
+        Kind::Estimate | Kind::Optimise | Kind::Manifolds | Kind::Synthesis => {
             if let Some(joint) = (0..robot.joints()).find(slides) {
                 let message = format!(
                     "the margin is an angle, and joint {} is prismatic",
