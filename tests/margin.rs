@@ -156,13 +156,13 @@ fn sizes_fall_with_the_margin() {
     }
     assert_eq!(last, [0.0, 0.0]);
     for (limits, joints) in [(three, 3), (four, 4)] {
-        let size = |failures| match joints {
-            3 => size_3r(&limits, failures),
-            _ => size_4r(&limits, failures),
+        let size = |failures: FailureSet| match joints {
+            3 => size_3r(&limits, &failures),
+            _ => size_4r(&limits, &failures),
         };
-        assert!(size(&any(joints, 2.0)) < size(&any(joints, 0.0)));
-        assert!(size(&any(joints, 2.0)) > 0.0);
-        assert_eq!(size(&any(joints, 0.0)), size(&FailureSet::any(joints)));
+        assert!(size(any(joints, 2.0)) < size(any(joints, 0.0)));
+        assert!(size(any(joints, 2.0)) > 0.0);
+        assert_eq!(size(any(joints, 0.0)), size(FailureSet::any(joints)));
     }
 }
 
