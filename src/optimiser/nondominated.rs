@@ -17,7 +17,10 @@ pub fn ranks(points: &[Vec<f64>]) -> Vec<usize> {
         if left.is_empty() {
             break;
         }
-        let beaten = |&k: &usize| left.iter().any(|&other| dominates(&points[other], &points[k]));
+        let beaten = |&k: &usize| {
+            left.iter()
+                .any(|&other| dominates(&points[other], &points[k]))
+        };
         let (rest, front): (Vec<usize>, Vec<usize>) = left.iter().partition(|k| beaten(k));
         for k in front {
             ranks[k] = rank;

@@ -72,9 +72,9 @@ pub use shards::{MergeReport, Part, ShardReport, build_part, merge};
 pub use singular_settings::{
     Configuration, FailureStudy, LargestManifold, LargestSearch, NamedGoal, SingularitySearch,
 };
-pub use synthesis_check::SynthesisQuestion;
-pub use synthesis_settings::{Effort, Family, ParameterRange, RowRange, SynthesisStudy};
 pub use surrogate_settings::{
     Arcs, DatasetSettings, DecoderKind, Mdn, ModelFile, SurrogateEstimator, SurrogateMethod,
     SurrogateSettings, Train, Training, Validate,
 };
+pub use synthesis_check::SynthesisQuestion;
+pub use synthesis_settings::{Effort, Family, ParameterRange, RowRange, SynthesisStudy};

@@ -112,9 +112,9 @@ fn ridge(optimum: &Optimum) -> Option<String> {
     if !ranges.iter().any(is_apart) {
         return None;
     }
-    let all = (1..).zip(&ranges).map(|(link, [low, high])| {
-        format!("l_{link} from {low:.2} to {high:.2} m")
-    });
+    let all = (1..)
+        .zip(&ranges)
+        .map(|(link, [low, high])| format!("l_{link} from {low:.2} to {high:.2} m"));
     Some(format!(
         "The optimum is a flat ridge: {} robots with the same score to 0.1 % were found ({}). Along \
          such a ridge robots may degenerate, down to workspaces of no area. Ask for limits with a \

@@ -5,8 +5,8 @@
 
 use super::hybrid_settings::Hybrid;
 use super::singular_settings::{FailureStudy, LargestManifold, SingularitySearch};
-use super::synthesis_check::SynthesisQuestion;
 use super::surrogate_settings::{SurrogateEstimator, Train, Validate};
+use super::synthesis_check::SynthesisQuestion;
 use crate::design::{JointKind, Robot, TaskSpace};
 use crate::kinematics::{JointScale, joint_scales};
 use crate::manifold::SearchSettings;

@@ -50,7 +50,7 @@ pub(super) fn synthesis(
         return None;
     }
     check_failures(file, problems, count, joints);
-    let Some(arm) = Arm::of_robot(&design.robot, task) else {
+    if Arm::of_robot(&design.robot, task).is_none() {
         problems.reject(
             &file.design.place,
             "the robot reaches nothing",
@@ -58,8 +58,8 @@ pub(super) fn synthesis(
             "choose another robot to compare with",
         );
         return None;
-    };
-    let search = synthesis_table::settings(table, joints, arm.extent.reach, problems);
+    }
+    let search = synthesis_table::settings(table, joints, problems);
     check_idle(file, problems);
     let start = table.and_then(|item| item.value.design_place());
     if let Some(place) = start.filter(|_| search.links_of(&design.robot, task).is_none()) {

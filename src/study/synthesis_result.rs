@@ -9,10 +9,11 @@ use crate::design::Robot;
 use crate::manifold::Intolerance;
 use crate::report;
 use crate::synthesis::{
-    Arm, Draft, Finalist, FrontRobot, Links, Measures, Merit, ParetoSearch, Synthesis,
+    Arm, Column, Draft, Finalist, FrontRobot, Links, MarginCurve, Measures, Merit,
+    ParameterSensitivity, ParetoSearch, Perturbed, Synthesis,
 };
 use crate::workspace::hybrid::SampleCounts;
-use crate::workspace::{ArtificialLimits, Estimate};
+use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate};
 use serde_json::{Value, json};
 
 /// The winner on the samples of the report.
@@ -20,8 +21,12 @@ pub(super) struct Winner {
     pub draft: Draft,
     pub measures: Measures,
     pub counts: SampleCounts,
-    /// Seconds.
-    pub measured: f64,
+    /// The share when joints overshoot their limits.
+    pub margins: MarginCurve,
+    /// The estimate by inverse kinematics with locked joints, if it was asked for.
+    pub check: Option<LockedJointEstimate>,
+    /// Change of the merit with every parameter; empty if it was not asked for.
+    pub sensitivity: Vec<ParameterSensitivity>,
 }
 
 /// The design that it is compared with, on the same kind of samples.
@@ -115,8 +120,20 @@ impl SynthesisFinding<'_> {
             "fit_bias": fitted - reported.value,
             "search_bias": best_seen - reported.value,
         });
+        result["margin"] = margins(&winner.margins);
+        if let Some(check) = &winner.check {
+            result["locked_joint_check"] = check_json(check, &winner.measures.share);
+        }
+        if !winner.sensitivity.is_empty() {
+            let each = winner.sensitivity.iter().map(|s| self.sensitivity_json(s));
+            result["sensitivity"] = each.collect();
+        }
         result["chosen"] = json!(chosen.map(|c| c.name.clone()));
-        let finalists: Vec<Value> = search.finalists().iter().map(|f| self.finalist(f)).collect();
+        let finalists: Vec<Value> = search
+            .finalists()
+            .iter()
+            .map(|f| self.finalist(f))
+            .collect();
         result["finalists"] = json!(finalists);
         result["screening"] = json!({
             "robots": search.screening().len(),
@@ -176,9 +193,63 @@ impl SynthesisFinding<'_> {
         links.iter().map(row).collect()
     }
 
+    /// Tolerance and changes of the merit when one number is too small and too large by it.
+    fn sensitivity_json(&self, sensitivity: &ParameterSensitivity) -> Value {
+        let reach = self.question.search.reach;
+        let (key, tolerance) = match sensitivity.what {
+            Perturbed::Link(_, Column::Length | Column::Offset) => {
+                ("tolerance", sensitivity.tolerance * reach)
+            }
+            _ => ("tolerance_deg", sensitivity.tolerance.to_degrees()),
+        };
+        let [less, more] = &sensitivity.change;
+        let mut json = json!({ "parameter": parameter_name(sensitivity.what) });
+        json[key] = json!(tolerance);
+        json["less"] = estimate(less);
+        json["more"] = estimate(more);
+        json
+    }
+
     fn limits_json(&self, limits: &ArtificialLimits, links: &Links) -> Value {
         limits_deg(&DegreeLimits::from_limits(limits, &self.robot(links)))
     }
+}
+
+/// `alpha_3`, `a_2`, `d_4`, `lower_5`, `upper_5`.
+pub(super) fn parameter_name(what: Perturbed) -> String {
+    match what {
+        Perturbed::Link(row, Column::Twist) => format!("alpha_{}", row + 1),
+        Perturbed::Link(row, Column::Length) => format!("a_{}", row + 1),
+        Perturbed::Link(row, Column::Offset) => format!("d_{}", row + 1),
+        Perturbed::Lower(joint) => format!("lower_{}", joint + 1),
+        Perturbed::Upper(joint) => format!("upper_{}", joint + 1),
+    }
+}
+
+fn margins(curve: &MarginCurve) -> Value {
+    let point = |point: &crate::synthesis::AtMargin| {
+        json!({
+            "margin_deg": point.margin.to_degrees(),
+            "share": point.share.value,
+            "standard_error": point.share.error,
+        })
+    };
+    json!({
+        "points": curve.points.iter().map(point).collect::<Vec<Value>>(),
+        "ten_percent_deg": curve.ten_percent.map(f64::to_degrees),
+    })
+}
+
+/// The check beside the number it checks: their difference in standard errors.
+fn check_json(check: &LockedJointEstimate, reported: &Estimate) -> Value {
+    let share = check.fault_tolerant_share();
+    let error = share.error.hypot(reported.error);
+    json!({
+        "poses": check.reachable,
+        "share": estimate(&share),
+        "pre_failure_share": estimate(&check.pre_failure_share()),
+        "difference_in_standard_errors": (share.value - reported.value) / error,
+    })
 }
 
 fn estimate(estimate: &Estimate) -> Value {

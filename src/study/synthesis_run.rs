@@ -6,13 +6,12 @@ use super::settings::Study;
 use super::synthesis_check::SynthesisQuestion;
 use super::synthesis_result::{Reference, SynthesisFinding, Winner};
 use crate::synthesis::{
-    Arm, DesignProblem, Draft, Links, Look, ParetoSearch, Purpose, REPLICATES, Synthesis,
-    sample_seed,
+    Arm, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
+    REPLICATES, Synthesis, Tolerances, sample_seed,
 };
-use crate::workspace::{ArtificialLimits, FailureSet};
+use crate::workspace::{ArtificialLimits, FailureSet, LockedJointCheck, LockedJointEstimate};
 use serde_json::Value;
 use std::sync::atomic::Ordering;
-use std::time::Instant;
 
 /// Runs `study` and returns the content of `result.json`.
 ///
@@ -28,7 +27,10 @@ pub(super) fn run(
     let asked = &question.search;
     let problem = asked.problem(study.task, &failures(study, question));
     let starts: Vec<Links> = match asked.include_design {
-        true => asked.links_of(&study.design.robot, study.task).into_iter().collect(),
+        true => asked
+            .links_of(&study.design.robot, study.task)
+            .into_iter()
+            .collect(),
         false => Vec::new(),
     };
     let saved = ready.saved.take();
@@ -52,8 +54,13 @@ fn failures(study: &Study, question: &SynthesisQuestion) -> FailureSet {
     let joints = question.search.links.len();
     match joints == study.design.robot.joints() {
         true => study.failures.clone(),
-        false => FailureSet::any(joints),
+        false => FailureSet::any(joints).with_margin(study.failures.margin()),
     }
+}
+
+/// Margins that are reported, radians.
+fn margins() -> Vec<f64> {
+    [0.0, 1.0, 2.0, 5.0, 10.0].map(f64::to_radians).to_vec()
 }
 
 struct Run<'a> {
@@ -67,7 +74,10 @@ struct Run<'a> {
 impl Run<'_> {
     fn tell(&self, share: f64, best: f64, message: &str) {
         let done = (1000.0 * share.clamp(0.0, 1.0)) as u64;
-        self.ready.session.progress.update(done, 1000, best, message);
+        self.ready
+            .session
+            .progress
+            .update(done, 1000, best, message);
     }
 
     fn check_interrupt(&self) -> Result<(), RunError> {
@@ -172,7 +182,6 @@ impl Run<'_> {
     /// The winner measured on samples that nothing was fitted to or chosen by.
     fn winner(&self, draft: &Draft) -> Result<Winner, RunError> {
         self.tell(0.82, draft.score, "measuring the winner on fresh samples");
-        let started = Instant::now();
         let problem = &self.problem;
         let nothing = || anyhow::anyhow!("the winner reaches nothing");
         let arm = Arm::of_links(&problem.links, &draft.links).ok_or_else(nothing)?;
@@ -180,12 +189,65 @@ impl Run<'_> {
             .atlas(&arm, self.report_look(), Some(&draft.limits))
             .ok_or_else(nothing)?;
         let measures = problem.measures(&arm, &atlas, &draft.limits);
+        self.check_interrupt()?;
+        let margins = problem.margin_curve(&arm, &atlas, &draft.limits, &margins());
+        let counts = atlas.counts();
+        drop(atlas);
         Ok(Winner {
             draft: draft.clone(),
-            counts: atlas.counts(),
+            counts,
             measures,
-            measured: started.elapsed().as_secs_f64(),
+            margins,
+            check: self.check(&arm, draft)?,
+            sensitivity: self.sensitivity(draft)?,
         })
+    }
+
+    /// The same share by another way: inverse kinematics with locked joints on random task points.
+    fn check(&self, arm: &Arm, draft: &Draft) -> Result<Option<LockedJointEstimate>, RunError> {
+        let poses = self.question.search.effort.check_poses;
+        if poses == 0 {
+            return Ok(None);
+        }
+        let (study, failures) = (self.study, &self.problem.failures);
+        let check = LockedJointCheck {
+            poses,
+            margin: failures.margin(),
+            seed: sample_seed(study.seed, Purpose::Check, 0),
+            ..LockedJointCheck::default()
+        };
+        let watch = |done: u64, of: u64| {
+            let share = done as f64 / of.max(1) as f64;
+            self.tell(
+                0.85 + 0.05 * share,
+                f64::NAN,
+                "checking by inverse kinematics",
+            );
+        };
+        let stop = || self.ready.session.interrupt.load(Ordering::SeqCst);
+        let limits = &draft.limits;
+        let estimate = check.run(&arm.robot, study.task, limits, failures, &watch, &stop);
+        self.check_interrupt()?;
+        Ok(estimate)
+    }
+
+    fn sensitivity(&self, draft: &Draft) -> Result<Vec<ParameterSensitivity>, RunError> {
+        let asked = &self.question.search;
+        let samples = asked.effort.sensitivity_samples;
+        if samples == 0 {
+            return Ok(Vec::new());
+        }
+        self.tell(0.91, f64::NAN, "moving every parameter by its tolerance");
+        let tolerances = Tolerances {
+            length: asked.tolerance / asked.reach,
+            angle: asked.tolerance_deg.to_radians(),
+        };
+        let seed = self.study.seed;
+        let found = self
+            .problem
+            .sensitivity(draft, tolerances, samples as u32, seed);
+        self.check_interrupt()?;
+        Ok(found)
     }
 
     /// The design that the winner is compared with, with its own limits or the best found for it.

@@ -1,9 +1,7 @@
 //! The table `[synthesis]`: read as written, then filled in beside the robot.
 
 use super::file::{MAX_DEGREES, MAX_LENGTH};
-use super::synthesis_settings::{
-    Effort, Family, ParameterRange, RowRange, SLICES, SynthesisStudy,
-};
+use super::synthesis_settings::{Effort, Family, ParameterRange, RowRange, SLICES, SynthesisStudy};
 use crate::design::TaskSpace;
 use crate::diagnostic::{Entry, Item, Place, Problems, Table};
 use crate::synthesis::{Column, LinkSpace, Merit};
@@ -76,6 +74,8 @@ const MOST_SAMPLES: u64 = 10_000_000;
 /// Fewest task points from which anything can be told.
 const FEWEST_SAMPLES: u64 = 64;
 
+/// Default reach, metres.
+const REACH: f64 = 1.0;
 /// Default bounds, in reaches, and shares.
 const MOST_LENGTH: f64 = 1.8;
 const LONGEST: f64 = 0.5;
@@ -151,7 +151,11 @@ fn read_effort(table: &Table) -> Effort {
     };
     let samples = FEWEST_SAMPLES..=MOST_SAMPLES;
     set("screened", 1..=MOST, &mut effort.screened);
-    set("screening_samples", samples.clone(), &mut effort.screening_samples);
+    set(
+        "screening_samples",
+        samples.clone(),
+        &mut effort.screening_samples,
+    );
     set("runs", 1..=100, &mut effort.runs);
     set("trial_generations", 1..=MOST, &mut effort.trial_generations);
     set("generations", 1..=MOST, &mut effort.generations);
@@ -160,10 +164,18 @@ fn read_effort(table: &Table) -> Effort {
     set("patience", 5..=MOST, &mut effort.patience);
     set("fit_samples", samples.clone(), &mut effort.fit_samples);
     let measured = 1024..=MOST_SAMPLES;
-    set("selection_samples", measured.clone(), &mut effort.selection_samples);
+    set(
+        "selection_samples",
+        measured.clone(),
+        &mut effort.selection_samples,
+    );
     set("report_samples", measured, &mut effort.report_samples);
     set("check_poses", 0..=MOST, &mut effort.check_poses);
-    set("sensitivity_samples", 0..=MOST_SAMPLES, &mut effort.sensitivity_samples);
+    set(
+        "sensitivity_samples",
+        0..=MOST_SAMPLES,
+        &mut effort.sensitivity_samples,
+    );
     effort
 }
 
@@ -191,10 +203,18 @@ fn read_parameter(
         let values = entry.array("an array of numbers")?;
         if values.is_empty() {
             let (expected, help) = ("at least one number", "name the values to choose from");
-            problems.reject(entry.place(), "there is nothing to choose from", expected, help);
+            problems.reject(
+                entry.place(),
+                "there is nothing to choose from",
+                expected,
+                help,
+            );
             return None;
         }
-        let read: Vec<_> = values.iter().map(|v| v.number(-most..=most, unit)).collect();
+        let read: Vec<_> = values
+            .iter()
+            .map(|v| v.number(-most..=most, unit))
+            .collect();
         let values = read.into_iter().collect::<Option<Vec<_>>>()?;
         let values = values.into_iter().map(|item| item.value).collect();
         return Some(entry.item(ParameterRange::OneOf(values)));
@@ -217,19 +237,24 @@ fn read_parameter(
     Some(entry.item(ParameterRange::Fixed(value.value)))
 }
 
-/// The study's settings: the table with its defaults, for robots like the design (which has
-/// `joints` joints and the given reach).
+/// The study's settings: the table with its defaults, for robots with as many joints as the
+/// design.
 pub(super) fn settings(
     item: Option<&Item<SynthesisTable>>,
     joints: usize,
-    own_reach: f64,
     problems: &Problems,
 ) -> SynthesisStudy {
     let empty = SynthesisTable::default();
     let table = item.map_or(&empty, |item| &item.value);
-    let family = table.family.as_ref().map_or(Family::RightAngles, |f| f.value);
-    let reach = table.reach.unwrap_or(own_reach);
-    let joints = table.joints.as_ref().map_or(joints, |item| item.value as usize);
+    let family = table
+        .family
+        .as_ref()
+        .map_or(Family::RightAngles, |f| f.value);
+    let reach = table.reach.unwrap_or(REACH);
+    let joints = table
+        .joints
+        .as_ref()
+        .map_or(joints, |item| item.value as usize);
     SynthesisStudy {
         objectives: objectives(table, problems),
         family,
@@ -303,7 +328,8 @@ fn rows(
         problems.reject(&links.place, "wrong number of rows", &expected, help);
     }
     let of = |own: &Option<Item<ParameterRange>>, other: &ParameterRange| {
-        own.as_ref().map_or(other.clone(), |item| item.value.clone())
+        own.as_ref()
+            .map_or(other.clone(), |item| item.value.clone())
     };
     let row = |row: &RowTable| RowRange {
         alpha_deg: of(&row.alpha_deg, &of_family.alpha_deg),
@@ -321,15 +347,20 @@ impl SynthesisTable {
             Some(item) => !matches!(item.value, ParameterRange::Fixed(0.0)),
             None => false,
         };
-        LinkSpace::idle(rows.len(), task).into_iter().find_map(|(row, column)| {
-            let (own, name) = match column {
-                Column::Twist => (&rows[row].alpha_deg, "alpha"),
-                Column::Length => (&rows[row].a, "a"),
-                Column::Offset => (&rows[row].d, "d"),
-            };
-            let place = own.as_ref().map(|item| &item.place).filter(|_| varies(own))?;
-            Some((place, format!("{name}_{}", row + 1)))
-        })
+        LinkSpace::idle(rows.len(), task)
+            .into_iter()
+            .find_map(|(row, column)| {
+                let (own, name) = match column {
+                    Column::Twist => (&rows[row].alpha_deg, "alpha"),
+                    Column::Length => (&rows[row].a, "a"),
+                    Column::Offset => (&rows[row].d, "d"),
+                };
+                let place = own
+                    .as_ref()
+                    .map(|item| &item.place)
+                    .filter(|_| varies(own))?;
+                Some((place, format!("{name}_{}", row + 1)))
+            })
     }
 
     /// Where it is asked for the design as a start.
@@ -337,7 +368,9 @@ impl SynthesisTable {
         let family = self.family.as_ref();
         let family = family.filter(|item| item.value == Family::Design);
         let included = self.include_design.as_ref().filter(|item| item.value);
-        family.map(|item| &item.place).or(included.map(|item| &item.place))
+        family
+            .map(|item| &item.place)
+            .or(included.map(|item| &item.place))
     }
 }
 

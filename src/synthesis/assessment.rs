@@ -141,12 +141,7 @@ impl DesignProblem {
     }
 
     /// `links` with given limits, measured on fresh samples.
-    pub fn measured(
-        &self,
-        links: &Links,
-        limits: &ArtificialLimits,
-        look: Look,
-    ) -> Option<Draft> {
+    pub fn measured(&self, links: &Links, limits: &ArtificialLimits, look: Look) -> Option<Draft> {
         let arm = Arm::of_links(&self.links, links)?;
         let atlas = self.atlas(&arm, look, Some(limits))?;
         Some(self.draft_of(links, &arm, &atlas, limits.clone()))
@@ -196,7 +191,9 @@ impl DesignProblem {
             let starts = drawn.into_iter().take(CLIMBED);
             found.extend(starts.map(|start| climb(&objective, start.x, &sweeps)));
         }
-        let best = found.into_iter().reduce(|a, b| if b.score > a.score { b } else { a });
+        let best = found
+            .into_iter()
+            .reduce(|a, b| if b.score > a.score { b } else { a });
         match best {
             Some(best) => space.design(&best.x).limits,
             None => ArtificialLimits::free(arm.robot.joints()),
@@ -221,7 +218,9 @@ impl DesignProblem {
             let least = shares[best] * place;
             let wide = |step: isize| {
                 let next = |k: usize| (best as isize + step * k as isize).rem_euclid(BINS as isize);
-                (1..BINS).find(|&k| shares[next(k) as usize] < least).unwrap_or(BINS)
+                (1..BINS)
+                    .find(|&k| shares[next(k) as usize] < least)
+                    .unwrap_or(BINS)
             };
             let [down, up] = [wide(-1), wide(1)].map(|k| (k as f64 - 0.5) * TAU / BINS as f64);
             let centre = -PI + (best as f64 + 0.5) * TAU / BINS as f64;
@@ -248,7 +247,10 @@ impl DesignProblem {
             }
             let [lower, upper] = [limit.lower, limit.upper].map(|end| (end / step).round() * step);
             let missing = (self.min_width - (upper - lower)).max(0.0);
-            JointLimit::new(lower, upper + (missing / step - 1e-9).ceil().max(0.0) * step)
+            JointLimit::new(
+                lower,
+                upper + (missing / step - 1e-9).ceil().max(0.0) * step,
+            )
         };
         ArtificialLimits::new(limits.joints().iter().map(round).collect())
     }
@@ -272,7 +274,13 @@ impl DesignProblem {
         };
         let bounds = &self.bounds;
         short(measures.fill.value, bounds.least_fill)
-            * short(measures.pre_failure_share.value, bounds.least_pre_failure_share)
-            * short(bounds.most_length / measures.length.max(f64::MIN_POSITIVE), 1.0)
+            * short(
+                measures.pre_failure_share.value,
+                bounds.least_pre_failure_share,
+            )
+            * short(
+                bounds.most_length / measures.length.max(f64::MIN_POSITIVE),
+                1.0,
+            )
     }
 }

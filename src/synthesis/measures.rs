@@ -103,7 +103,11 @@ impl Measures {
             Merit::PreFailureShare => self.pre_failure_share,
             Merit::Survival => self.survival,
             Merit::Slenderness => Estimate {
-                value: if self.length > 0.0 { 1.0 / self.length } else { 0.0 },
+                value: if self.length > 0.0 {
+                    1.0 / self.length
+                } else {
+                    0.0
+                },
                 error: 0.0,
             },
         }

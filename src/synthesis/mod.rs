@@ -2,6 +2,7 @@
 mod arm;
 mod assessment;
 mod link_space;
+mod margin;
 mod measures;
 mod pareto;
 mod run;
@@ -12,6 +13,7 @@ mod sensitivity;
 pub use arm::Arm;
 pub use assessment::{Bounds, DesignProblem, Draft, Look};
 pub use link_space::{Column, Constants, LinkRow, LinkSpace, Links, Parameter, total_length};
+pub use margin::{AtMargin, MarginCurve};
 pub use measures::{Measures, Merit};
 pub use pareto::{FrontRobot, ParetoSearch, ParetoSettings};
 pub use run::{Generation, Stage};

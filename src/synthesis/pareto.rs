@@ -209,7 +209,11 @@ impl ParetoSearch {
             self.evaluations += self.population.len() as u64;
             self.population = renewed;
         }
-        let points: Vec<Vec<f64>> = self.population.iter().map(|d| self.point(problem, d)).collect();
+        let points: Vec<Vec<f64>> = self
+            .population
+            .iter()
+            .map(|d| self.point(problem, d))
+            .collect();
         let rank = ranks(&points);
         let crowd = crowding(&points, &rank);
         let fitter = |a: usize, b: usize| {
@@ -253,7 +257,11 @@ impl ParetoSearch {
                 let starts = [a.limits.clone()];
                 return problem.draft(&links, &starts, look, false);
             }
-            x if x < 0.75 => widened(&a.limits, 1.0 + 0.5 * rng.random::<f64>(), problem.min_width),
+            x if x < 0.75 => widened(
+                &a.limits,
+                1.0 + 0.5 * rng.random::<f64>(),
+                problem.min_width,
+            ),
             _ => moved(&a.limits, problem.min_width, rng),
         };
         problem.measured(&links, &limits, look)

@@ -159,7 +159,11 @@ impl Synthesis {
     pub fn winner(&self) -> Option<&Finalist> {
         let best = self.finalists.first()?;
         let good = |f: &&Finalist| f.score >= best.score - 2.0 * best.error.hypot(f.error);
-        self.finalists.iter().filter(|f| f.is_round).find(good).or(Some(best))
+        self.finalists
+            .iter()
+            .filter(|f| f.is_round)
+            .find(good)
+            .or(Some(best))
     }
 
     /// Scores of all generations so far.
@@ -187,7 +191,8 @@ impl Synthesis {
         let latest = self.history.last().map(|g| g.quartiles[1]);
         let best_screened = self.screening.iter().copied().fold(0.0, f64::max);
         let s = &self.settings;
-        let all = s.screened / 4 + s.runs * s.trial_generations * s.population
+        let all = s.screened / 4
+            + s.runs * s.trial_generations * s.population
             + 2 * s.generations * s.population;
         let done = f64::from(self.screened.min(s.screened)) / 4.0
             + self.history.len() as f64 * f64::from(s.population);
@@ -241,7 +246,8 @@ impl Synthesis {
 
     fn sort_drafts(&mut self) {
         self.drafts.sort_by(|a, b| b.score.total_cmp(&a.score));
-        self.drafts.truncate(self.settings.runs as usize * SECOND_LOOKS);
+        self.drafts
+            .truncate(self.settings.runs as usize * SECOND_LOOKS);
     }
 
     /// Looks again at the best of the screening, whose scores are those of the luckiest, and

@@ -120,7 +120,10 @@ impl DesignProblem {
             }
             for upper in [false, true] {
                 let built = [-tolerances.angle, tolerances.angle].map(|off| {
-                    (draft.links.clone(), with_end(&draft.limits, joint, upper, off))
+                    (
+                        draft.links.clone(),
+                        with_end(&draft.limits, joint, upper, off),
+                    )
                 });
                 let what = match upper {
                     false => Perturbed::Lower(joint),

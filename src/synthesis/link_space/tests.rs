@@ -24,7 +24,10 @@ fn random_robots_keep_to_their_bounds_at_reach_1() {
         assert_eq!(links, confined);
         assert!((space.reach(&links) - 1.0).abs() < 1e-6);
         assert!(links[..6].iter().all(|l| l.twist.abs() == FRAC_PI_2));
-        assert_eq!((links[0].offset, links[6].length, links[6].twist), (0.0, 0.0, 0.0));
+        assert_eq!(
+            (links[0].offset, links[6].length, links[6].twist),
+            (0.0, 0.0, 0.0)
+        );
     }
 }
 
