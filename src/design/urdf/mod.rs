@@ -1,10 +1,13 @@
-//! Reads a robot from a URDF file: the chain of joints from a base link to a tip link.
+//! Reads a robot from a URDF file, the chain of joints from a base link to a tip link, and writes
+//! one.
 //!
 //! The file is first read as XML, which tells where everything stands; a plain copy of its
 //! joints then goes to the URDF reader. Meshes, masses, branches and extensions are ignored.
 
 mod chain;
+mod shape;
 mod tree;
+mod write;
 mod xml;
 
 use super::file::{MAX_LENGTH, check_joint_count};
@@ -13,6 +16,7 @@ use crate::diagnostic::{InputError, Item, Problem, Source, Table};
 use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::path::Path;
 use tree::Tree;
+pub use write::robot_to_urdf;
 use xml::{Xml, head, joint_name, problem};
 
 /// Largest length (metres) or angle (radians) in a URDF file.

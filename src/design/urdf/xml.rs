@@ -184,6 +184,13 @@ fn push_attribute(text: &mut String, name: &str, value: Option<&str>) {
         return;
     };
     let _ = write!(text, " {name}=\"");
+    push_escaped(text, value);
+    text.push('"');
+}
+
+/// Appends `value` as XML has it in texts and attributes; a space for every character that XML
+/// does not know.
+pub(super) fn push_escaped(text: &mut String, value: &str) {
     for character in value.chars() {
         match character {
             '&' => text.push_str("&amp;"),
@@ -191,10 +198,12 @@ fn push_attribute(text: &mut String, name: &str, value: Option<&str>) {
             '>' => text.push_str("&gt;"),
             '"' => text.push_str("&quot;"),
             '\'' => text.push_str("&apos;"),
+            control if control.is_control() || "\u{fffe}\u{ffff}".contains(control) => {
+                text.push(' ');
+            }
             plain => text.push(plain),
         }
     }
-    text.push('"');
 }
 
 fn syntax_error(source: &Source, error: &roxmltree::Error) -> InputError {
