@@ -47,6 +47,7 @@ mod surrogate_search;
 mod surrogate_settings;
 mod surrogate_table;
 mod synthesis_check;
+mod synthesis_page;
 mod synthesis_result;
 mod synthesis_run;
 mod synthesis_settings;
