@@ -169,7 +169,7 @@ fn names_are_escaped_and_shapes_are_whole() {
     let robot = urdf_rs::read_from_string(&text).unwrap();
     assert_eq!((robot.joints.len(), robot.links.len()), (8, 9));
     assert!(robot.links.iter().all(|link| !link.visual.is_empty()));
-    assert!(robot.joints.iter().all(|joint| joint.name != ""));
+    assert!(robot.joints.iter().all(|joint| !joint.name.is_empty()));
 }
 
 #[test]

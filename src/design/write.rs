@@ -40,7 +40,7 @@ pub fn robot_to_toml(robot: &Robot, comment_lines: &[String]) -> Result<String, 
     if let Some(limits) = &robot.physical_limits {
         text += &physical_limits(robot, limits);
     }
-    match parse_design(&Source::new(&format!("{}.toml", robot.name), text.as_str())) {
+    match parse_design(&Source::new("the robot", text.as_str())) {
         Ok(_) => Ok(text),
         Err(error) => {
             let problem = error.problem();

@@ -1,4 +1,4 @@
-//! The report of a study about singular configurations: sections of text and tables, figures, files.
+//! The report of a study as sections of text and tables, figures and files.
 
 use super::error::ReportError;
 use super::figure::{Figure, Format, figure_png, write_rendered};
@@ -39,6 +39,8 @@ pub struct FindingReport<'a> {
     pub figures: Vec<&'a dyn Figure>,
     /// Further tables with the names of their files.
     pub tables: Vec<(&'static str, Table)>,
+    /// Further files to be used elsewhere, such as a robot's: name and text.
+    pub files: Vec<(String, String)>,
     /// Written as `result.json`.
     pub result_json: serde_json::Value,
     /// The study as run, written as `study.toml`.
@@ -49,9 +51,9 @@ pub struct FindingReport<'a> {
     pub notes: Vec<String>,
 }
 
-/// Writes all figures with their tables, the further tables, `study.toml`, `report.html` and
-/// `result.json` into `directory`; returns the files' paths. With `page` false only the tables and
-/// `result.json`.
+/// Writes all figures with their tables, the further tables and files, `study.toml`, `report.html` and
+/// `result.json` into `directory`; returns the files' paths. With `page` false only the tables,
+/// the files and `result.json`.
 ///
 /// # Errors
 /// A figure could not be drawn or a file not be written.
@@ -65,6 +67,10 @@ pub fn write_finding_report(
     let mut written = Vec::new();
     for (name, table) in &report.tables {
         write_text(&path(name), &table.to_csv()?)?;
+        written.push(path(name));
+    }
+    for (name, text) in &report.files {
+        write_text(&path(name), text)?;
         written.push(path(name));
     }
     if page {
@@ -101,6 +107,10 @@ fn page_of(report: &FindingReport, figures: &[InlineFigure]) -> String {
         @if !figures.is_empty() {
             h2 { "Figures" }
             div.figures { @for figure in figures { (inlined(figure)) } }
+        }
+        @if !report.files.is_empty() {
+            h2 { "Files" }
+            ul { @for (name, _) in &report.files { li { a href=(name) download { (name) } } } }
         }
         (sources(&report.study_toml, &report.provenance, &report.result_json))
     };

@@ -26,7 +26,7 @@ pub struct HalfPlaneFigure<'a> {
 const MOST: [f64; 2] = [170.0, 200.0];
 
 /// A cell's number in one of the panels.
-type Value<'v> = &'v (dyn Fn(usize, usize) -> f64 + Sync);
+pub(super) type Value<'v> = &'v (dyn Fn(usize, usize) -> f64 + Sync);
 
 impl Figure for HalfPlaneFigure<'_> {
     fn name(&self) -> &'static str {
@@ -80,6 +80,7 @@ impl Figure for HalfPlaneFigure<'_> {
             let panel = self.panel(&sections, left);
             panel_title(canvas, [panel.left, panel.top], text[0]);
             draw_cells(canvas, &panel, &sections, value, &scale);
+            draw_axes(canvas, &panel, ["r (m)", "z (m)"]);
             if sections.is_empty() && text[0].starts_with("(a)") {
                 panel.remark(canvas, "W_F is empty");
             }
@@ -175,8 +176,8 @@ fn panel_size(sections: &Sections) -> [f64; 2] {
     extent.map(|length| length * scale)
 }
 
-/// The cells within the outline, the outline and the axes.
-fn draw_cells(
+/// The cells within the outline, and the outline.
+pub(super) fn draw_cells(
     canvas: &mut Canvas,
     panel: &Panel,
     sections: &Sections,
@@ -207,6 +208,10 @@ fn draw_cells(
             canvas.stroke(&panel.path(&part), 0.6, GREY);
         }
     }
+}
+
+/// The axes of a half-plane with their names.
+pub(super) fn draw_axes(canvas: &mut Canvas, panel: &Panel, [x_label, y_label]: [&str; 2]) {
     let x_ticks = ticks::round(
         panel.x[0],
         panel.x[1],
@@ -218,8 +223,8 @@ fn draw_cells(
         (panel.height / 28.0).max(2.0) as usize,
     );
     panel.axes(canvas, &x_ticks, &y_ticks, true);
-    panel.x_label(canvas, "r (m)");
-    panel.y_label(canvas, "z (m)", &y_ticks);
+    panel.x_label(canvas, x_label);
+    panel.y_label(canvas, y_label, &y_ticks);
 }
 
 /// The parts of a curve with r ≥ 0.

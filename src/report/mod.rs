@@ -6,7 +6,7 @@
 //! whole or not at all, and the same input gives the same bytes.
 //!
 //! [`write_report`], for studies of one pose [`write_manifold_report`], of singular configurations
-//! [`write_finding_report`] and for surrogates [`write_surrogate_report`] write everything;
+//! and of found robots [`write_finding_report`] and for surrogates [`write_surrogate_report`] write everything;
 //! [`write_figure`], [`write_json`] and [`write_text`] write single files.
 
 mod agreement;
@@ -19,6 +19,7 @@ mod calibration;
 mod canvas;
 mod colour_bar;
 mod convergence;
+mod design_parameter;
 mod distribution_figure;
 mod error;
 mod figure;
@@ -43,6 +44,7 @@ mod manifold_view;
 mod number;
 mod outline;
 mod panel;
+mod parameter_sensitivity;
 mod pareto_figure;
 mod point_cloud;
 mod points;
@@ -56,8 +58,11 @@ mod ring_picture;
 mod rings;
 mod robot_3d;
 mod robot_figure;
+mod robot_pair_figure;
 mod robot_view;
 mod scene;
+mod search_history;
+mod section_pair_figure;
 mod section_view;
 mod sections;
 mod sensitivity;
@@ -73,10 +78,12 @@ mod style;
 mod subscript;
 mod surrogate_page;
 mod surrogate_report;
+mod symbol;
 mod table;
 #[cfg(test)]
 mod tests;
 mod ticks;
+mod trade_off_figure;
 mod training_curve;
 mod workspace_figure;
 mod write;
@@ -86,6 +93,7 @@ pub use arm_poses_figure::{ArmPose, ArmPosesFigure};
 pub use calibration::{Calibration, CalibrationBin, CalibrationCurve};
 pub use canvas::{Canvas, Size};
 pub use convergence::{Convergence, ConvergencePoint};
+pub use design_parameter::DesignParameter;
 pub use distribution_figure::{DistributionFigure, SizeSample};
 pub use error::ReportError;
 pub use figure::{Figure, Format, figure_png, figure_svg, write_figure};
@@ -104,6 +112,7 @@ pub use manifold_report::{
 };
 pub use manifold_view::ManifoldFigure3d;
 pub use number::{degrees, estimate, joint_symbol, percentage, plain, unit, with_error};
+pub use parameter_sensitivity::{ParameterSensitivity, ParameterSensitivityFigure};
 pub use pareto_figure::{ParetoFigure, ParetoPoint};
 pub use points::{write_curves, write_points};
 pub use predicted_workspaces::{PredictedWorkspaces, WorkspaceCase};
@@ -111,6 +120,9 @@ pub use projections_figure::ProjectionsFigure;
 pub use result_files::{write_bytes, write_json, write_text};
 pub use robot_3d::{JointMark, SpatialRobotFigure};
 pub use robot_figure::RobotFigure;
+pub use robot_pair_figure::{PairedRobot, RobotPairFigure};
+pub use search_history::{HistoryGeneration, HistoryStage, SearchHistoryFigure};
+pub use section_pair_figure::{SectionOf, SectionPairFigure};
 pub use sensitivity::{LimitSide, Sensitivity, SensitivityCurve};
 pub use singularity_figure::{SingularPoint, SingularityFigure};
 pub use size_scatter::{SizeScatter, SizeSeries};
@@ -119,6 +131,7 @@ pub use spatial_figure::SpatialWorkspaceFigure;
 pub use split_figure::{SplitFigure, SplitPanel};
 pub use surrogate_report::{ReportTable, SurrogateReport, write_surrogate_report};
 pub use table::Table;
+pub use trade_off_figure::{TradeOffFigure, TradeOffObjective, TradeOffPoint};
 pub use training_curve::{TrainingCurve, TrainingEpoch};
 pub use workspace_figure::WorkspaceFigure;
 pub use write::{Report, write_report};

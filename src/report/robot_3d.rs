@@ -51,14 +51,35 @@ const AXES: [RGBAColor; 3] = [VERMILLION, GREEN, BLUE];
 const SHADOW: RGBAColor = RGBAColor(0xcc, 0xcc, 0xcc, 1.0);
 
 /// The robot placed on the sheet.
-struct Drawing {
+pub(super) struct Drawing {
     space: Space,
+    corner: Point,
+    width: f64,
     marks: Vec<Mark>,
     /// Lines from mark to mark, from the base to the tool.
     links: Vec<Vec<Vector3<f64>>>,
     frames: [Isometry3<f64>; 2],
     radius: f64,
-    height: f64,
+    /// Height that is used, points.
+    pub height: f64,
+}
+
+/// What a legend tells about robots in space with these kinds of joints.
+pub(super) fn legend_entries(turns: bool, slides: bool) -> Vec<(Swatch, &'static str)> {
+    let mut entries = Vec::new();
+    if turns {
+        entries.push((Swatch::Area(SKY, INK), "revolute joint"));
+    }
+    if slides {
+        entries.push((Swatch::Area(ORANGE, INK), "prismatic joint"));
+    }
+    entries.push((Swatch::Area(BODY, INK), "link"));
+    if entries.len() < 3 {
+        entries.push((Swatch::Area(SHADOW, SHADOW), "shadow on the floor"));
+    }
+    let names = ["x axis", "y axis", "z axis (base, tool)"];
+    entries.extend(AXES.map(Swatch::Line).into_iter().zip(names));
+    entries
 }
 
 impl SpatialRobotFigure {
@@ -67,6 +88,16 @@ impl SpatialRobotFigure {
     }
 
     fn place(&self) -> Drawing {
+        self.place_in([MARGIN, Self::head()], COLUMN - 2.0 * MARGIN)
+    }
+
+    /// Whether any joint turns, and whether any slides.
+    pub(super) fn kinds(&self) -> [bool; 2] {
+        [false, true].map(|kind| self.joints.iter().any(|joint| joint.slides == kind))
+    }
+
+    /// The robot as large as it fits below `corner` into `width` points.
+    pub(super) fn place_in(&self, corner: Point, width: f64) -> Drawing {
         let ends = self.joints.iter().flat_map(|j| [j.entry, j.foot]);
         let points: Vec<Vector3<f64>> = ends
             .chain([Vector3::zeros(), self.tool.translation.vector])
@@ -77,11 +108,11 @@ impl SpatialRobotFigure {
         let view = best_view(&points, &marks, radius);
         let frames = [Isometry3::identity(), self.tool];
         let sides = sides(&points, &marks, &frames, radius);
-        let width = COLUMN - 2.0 * MARGIN;
-        let corner = [MARGIN, Self::head()];
         let (space, height) = Space::fit(view, sides, corner, [width, TALLEST * width]);
         Drawing {
             space,
+            corner,
+            width,
             links: self.links(&marks),
             marks,
             frames,
@@ -111,27 +142,15 @@ impl SpatialRobotFigure {
     }
 
     fn draw_legend(&self, canvas: &mut Canvas) {
-        let slides = |wanted: bool| self.joints.iter().any(|joint| joint.slides == wanted);
-        let mut entries = Vec::new();
-        if slides(false) {
-            entries.push((Swatch::Area(SKY, INK), "revolute joint"));
-        }
-        if slides(true) {
-            entries.push((Swatch::Area(ORANGE, INK), "prismatic joint"));
-        }
-        entries.push((Swatch::Area(BODY, INK), "link"));
-        if entries.len() < 3 {
-            entries.push((Swatch::Area(SHADOW, SHADOW), "shadow on the floor"));
-        }
-        let names = ["x axis", "y axis", "z axis (base, tool)"];
-        entries.extend(AXES.map(Swatch::Line).into_iter().zip(names));
+        let [turns, slides] = self.kinds();
+        let entries = legend_entries(turns, slides);
         let at = [14.0, 12.0 + 0.5 * LEGEND_ROW + 2.0];
         legend(canvas, at, COLUMN - 14.0 - MARGIN, 3, &entries);
     }
 }
 
 impl Drawing {
-    fn draw(&self, canvas: &mut Canvas) {
+    pub(super) fn draw(&self, canvas: &mut Canvas) {
         self.space.draw_axes(canvas);
         self.draw_shadow(canvas);
         let mut scene = Scene::default();
@@ -207,9 +226,8 @@ impl Drawing {
 
     /// Joint numbers and the names of the two frames, where there is room.
     fn draw_names(&self, canvas: &mut Canvas) {
-        let corner = [MARGIN, SpatialRobotFigure::head()];
-        let size = [COLUMN - 2.0 * MARGIN, self.height];
-        let mut places = FreePlaces::new(self.occupied(), corner, size);
+        let size = [self.width, self.height];
+        let mut places = FreePlaces::new(self.occupied(), self.corner, size);
         for (number, mark) in (1..).zip(&self.marks) {
             let distance = self.radius * self.space.scale + 5.5;
             let at = places.take(self.space.at(&mark.centre), distance, 1.0);

@@ -241,6 +241,7 @@ impl FailureFinding<'_> {
             summary: self.summary(),
             sections: self.sections(),
             figures,
+            files: Vec::new(),
             tables: vec![("locks.csv", locks.table())],
             result_json: result.clone(),
             study_toml: study_toml.to_owned(),

@@ -110,6 +110,7 @@ fn write(
         summary: summary(finding),
         sections: sections(finding),
         figures,
+        files: Vec::new(),
         tables: Vec::new(),
         result_json: result.clone(),
         study_toml: study_toml.to_owned(),

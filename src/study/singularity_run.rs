@@ -269,6 +269,7 @@ fn write(
         summary: summary(study, catalogue),
         sections: sections(study, catalogue),
         figures,
+        files: Vec::new(),
         tables: Vec::new(),
         result_json: result.clone(),
         study_toml: study_toml.to_owned(),
