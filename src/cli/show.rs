@@ -2,12 +2,13 @@
 
 use super::joint_table::joint_table;
 use super::{Ending, output};
-use crate::design::{JointKind, Robot, TaskSpace, read_design};
-use crate::kinematics::{JointPlace, display_posture, joint_places, tool_frame, workspace_extent};
+use crate::design::{Robot, TaskSpace, read_design};
+use crate::kinematics::workspace_extent;
 use crate::manifold::Intolerance;
 use crate::report::{
-    Figure, JointMark, RobotFigure, SpatialRobotFigure, figure_png, figure_svg, plain, write_bytes,
+    Figure, RobotFigure, figure_png, figure_svg, plain, write_bytes,
 };
+use crate::study::spatial_robot;
 use crate::workspace::planar::PlanarPosition;
 use std::fmt::Write;
 use std::path::Path;
@@ -55,22 +56,7 @@ fn with_figure<T>(robot: &Robot, write: impl FnOnce(&dyn Figure) -> T) -> T {
             unrestricted: PlanarPosition::unrestricted_radii(&chain.lengths),
         });
     }
-    let theta = display_posture(robot);
-    let mark = |(joint, place): (usize, JointPlace)| JointMark {
-        slides: robot.joint_kind(joint) == JointKind::Prismatic,
-        frame: place.frame,
-        entry: place.entry,
-        foot: place.foot,
-    };
-    let joints = joint_places(robot, &theta)
-        .into_iter()
-        .enumerate()
-        .map(mark);
-    write(&SpatialRobotFigure {
-        title,
-        joints: joints.collect(),
-        tool: tool_frame(robot, &theta),
-    })
+    write(&spatial_robot(robot, title))
 }
 
 fn describe(robot: &Robot) -> String {

@@ -32,6 +32,7 @@ mod planar_run;
 mod pose_table;
 mod report_parts;
 mod result;
+mod robot_view;
 mod run;
 mod search;
 mod serve;
@@ -47,6 +48,7 @@ mod surrogate_search;
 mod surrogate_settings;
 mod surrogate_table;
 mod synthesis_check;
+mod synthesis_figures;
 mod synthesis_page;
 mod synthesis_result;
 mod synthesis_run;
@@ -63,6 +65,7 @@ pub use file::StudyFile;
 pub use folder::check_folder;
 pub use hybrid_settings::{Hybrid, HybridSampling};
 pub use load::is_study;
+pub use robot_view::spatial_robot;
 pub use run::{Progress, RunError, RunOptions, run};
 pub use settings::{
     CoordinateAscent, DegreeLimits, Design, Estimate, Estimator, EstimatorMethod, FigureFormat,

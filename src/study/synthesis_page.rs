@@ -32,7 +32,10 @@ pub(super) fn merit_text(merit: Merit, estimate: &Estimate) -> String {
 }
 
 fn percent(estimate: &Estimate) -> String {
-    format!("{} %", with_error(100.0 * estimate.value, 100.0 * estimate.error))
+    format!(
+        "{} %",
+        with_error(100.0 * estimate.value, 100.0 * estimate.error)
+    )
 }
 
 impl SynthesisFinding<'_> {
@@ -93,7 +96,10 @@ impl SynthesisFinding<'_> {
             true => format!(": {times:.1} times less"),
             false => String::new(),
         };
-        format!("{name}, for comparison, has {} with {limits}{times}.", merit_text(merit, &own))
+        format!(
+            "{name}, for comparison, has {} with {limits}{times}.",
+            merit_text(merit, &own)
+        )
     }
 
     /// Remarks a reader must not miss.
@@ -134,7 +140,11 @@ impl SynthesisFinding<'_> {
         let mut sections = Vec::new();
         if let (Some(search), Some(winner)) = (self.search, self.winner) {
             let robot = self.robot(&winner.draft.links);
-            sections.push(rows_section("The robot found", &robot, &winner.draft.limits));
+            sections.push(rows_section(
+                "The robot found",
+                &robot,
+                &winner.draft.limits,
+            ));
             sections.push(self.merits_section(winner));
             sections.push(self.honesty_section(search, winner));
             sections.push(margin_section(winner));
@@ -144,7 +154,11 @@ impl SynthesisFinding<'_> {
         }
         if let Some(reference) = self.reference {
             let heading = format!("For comparison: {}", self.study.design.robot.name);
-            sections.push(rows_section(&heading, &self.study.design.robot, &reference.limits));
+            sections.push(rows_section(
+                &heading,
+                &self.study.design.robot,
+                &reference.limits,
+            ));
         }
         sections
     }
@@ -192,9 +206,17 @@ impl SynthesisFinding<'_> {
         };
         let exactly = |value| Estimate { value, error: 0.0 };
         let best = search.history().iter().map(|g| g.best).fold(0.0, f64::max);
-        add("best of any generation (biased)", effort.samples, exactly(best));
+        add(
+            "best of any generation (biased)",
+            effort.samples,
+            exactly(best),
+        );
         let fitted = winner.draft.measures.merit(merit).value;
-        add("samples its limits were fitted on (biased)", effort.fit_samples, exactly(fitted));
+        add(
+            "samples its limits were fitted on (biased)",
+            effort.fit_samples,
+            exactly(fitted),
+        );
         if let Some(chosen) = search.winner() {
             let value = chosen.held_out.merit(merit);
             add("samples it was chosen on", effort.selection_samples, value);
@@ -217,16 +239,19 @@ impl SynthesisFinding<'_> {
         let front = self.pareto.map(|pareto| pareto.front()).unwrap_or_default();
         for (number, robot) in (1..).zip(front) {
             let mut row = vec![format!("{number}")];
-            let values = merits.iter().map(|m| merit_text(*m, &robot.held_out.merit(*m)));
+            let values = merits
+                .iter()
+                .map(|m| merit_text(*m, &robot.held_out.merit(*m)));
             row.extend(values);
             row.push(format!("{:.3}", robot.held_out.length * reach));
             table.rows.push(row);
         }
         Section {
             heading: "The front".into(),
-            text: "Each robot is in `front/` by its number, as a robot file and as URDF; its limits \
+            text:
+                "Each robot is in `front/` by its number, as a robot file and as URDF; its limits \
                    are in `result.json`."
-                .into(),
+                    .into(),
             table,
         }
     }
@@ -262,9 +287,13 @@ fn rows_section(heading: &str, robot: &Robot, limits: &ArtificialLimits) -> Sect
         _ => None,
     };
     if rows.is_some() {
-        table.header.extend(["α (deg)", "a (m)", "d (m)"].map(String::from));
+        table
+            .header
+            .extend(["α (deg)", "a (m)", "d (m)"].map(String::from));
     }
-    table.header.extend(["lower limit (deg)", "upper limit (deg)"].map(String::from));
+    table
+        .header
+        .extend(["lower limit (deg)", "upper limit (deg)"].map(String::from));
     let pairs = degrees.lower_deg.iter().zip(&degrees.upper_deg);
     for (index, (lower, upper)) in pairs.enumerate() {
         let mut row = vec![format!("{}", index + 1)];

@@ -1,19 +1,21 @@
 //! The result of `kind = "synthesis"`: numbers, files and page.
 
+use super::report_parts::{formats, provenance_rows};
 use super::result::{SCHEMA, limits_deg, provenance};
 use super::run::{RunError, RunOptions};
 use super::settings::{DegreeLimits, Study};
 use super::structure;
 use super::synthesis_check::SynthesisQuestion;
-use crate::design::Robot;
+use super::synthesis_page::tidy;
+use crate::design::{Robot, robot_to_toml, robot_to_urdf};
 use crate::manifold::Intolerance;
-use crate::report;
+use crate::report::{FindingReport, write_finding_report};
 use crate::synthesis::{
     Arm, Column, Draft, Finalist, FrontRobot, Links, MarginCurve, Measures, Merit,
     ParameterSensitivity, ParetoSearch, Perturbed, Synthesis,
 };
 use crate::workspace::hybrid::SampleCounts;
-use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate};
+use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate, SpatialShareMap};
 use serde_json::{Value, json};
 
 /// The winner on the samples of the report.
@@ -21,6 +23,10 @@ pub(super) struct Winner {
     pub draft: Draft,
     pub measures: Measures,
     pub counts: SampleCounts,
+    /// Where its workspace lies.
+    pub map: SpatialShareMap,
+    /// Metres, of the map.
+    pub reach: f64,
     /// The share when joints overshoot their limits.
     pub margins: MarginCurve,
     /// The estimate by inverse kinematics with locked joints, if it was asked for.
@@ -36,6 +42,8 @@ pub(super) struct Reference {
     /// Whether the limits are the study's; else they were fitted.
     pub given: bool,
     pub measures: Measures,
+    /// Where its workspace lies.
+    pub map: SpatialShareMap,
     /// Why it has no fault-tolerant workspace, if so.
     pub verdict: Option<Intolerance>,
 }
@@ -58,18 +66,99 @@ impl SynthesisFinding<'_> {
     /// # Errors
     /// A file could not be written.
     pub fn write(&self, options: &RunOptions, study_toml: &str) -> Result<Value, RunError> {
-        let _ = study_toml;
+        let study = self.study;
         let result = self.to_json();
-        let path = options.out.join("result.json");
-        report::write_json(&path, &result).map_err(anyhow::Error::from)?;
+        let figures = self.figures();
+        let report = FindingReport {
+            title: study.title.clone().unwrap_or_else(|| study.name.clone()),
+            study: study.name.clone(),
+            robot: study.design.robot.name.clone(),
+            source: study.design.robot.source.clone().unwrap_or_default(),
+            summary: self.summary(),
+            sections: self.sections(),
+            figures: figures.iter().map(|figure| figure.as_ref()).collect(),
+            tables: Vec::new(),
+            files: self.files(),
+            result_json: result.clone(),
+            study_toml: study_toml.to_owned(),
+            provenance: provenance_rows(study, rayon::current_num_threads()),
+            notes: self.notes(),
+        };
+        write_finding_report(&report, &options.out, &formats(study), study.report.figures)
+            .map_err(anyhow::Error::from)?;
         Ok(result)
     }
 
     /// The robot of `links` in metres.
     pub fn robot(&self, links: &Links) -> Robot {
+        self.named_robot(links, self.study.name.replace('_', "-"))
+    }
+
+    fn named_robot(&self, links: &Links, name: String) -> Robot {
         let asked = &self.question.search;
         let space = asked.link_space(self.study.task);
-        space.robot(links, asked.reach, &self.study.name)
+        let mut robot = space.robot(&tidy(links, asked.reach), asked.reach, &name);
+        robot.source = Some(format!(
+            "found by faultspace {} from the study {}, seed {}",
+            env!("CARGO_PKG_VERSION"),
+            self.study.name,
+            self.study.seed
+        ));
+        robot
+    }
+
+    /// Robot files, URDF files and a study of the winner, by name.
+    fn files(&self) -> Vec<(String, String)> {
+        let mut files = Vec::new();
+        let mut add = |folder: &str, links: &Links, limits: &ArtificialLimits, name: String| {
+            let robot = self.named_robot(links, name.clone());
+            let written = DegreeLimits::from_limits(limits, &robot);
+            let comments = [
+                format!(
+                    "Lower limits before a failure (deg): {:.4?}",
+                    written.lower_deg
+                ),
+                format!(
+                    "Upper limits before a failure (deg): {:.4?}",
+                    written.upper_deg
+                ),
+            ];
+            if let Ok(text) = robot_to_toml(&robot, &comments) {
+                files.push((format!("{folder}{name}.toml"), text));
+            }
+            files.push((format!("{folder}{name}.urdf"), robot_to_urdf(&robot)));
+        };
+        if let Some(winner) = self.winner {
+            let draft = &winner.draft;
+            add("", &draft.links, &draft.limits, "robot".into());
+        }
+        let front = self.pareto.map(|pareto| pareto.front()).unwrap_or_default();
+        for (number, robot) in (1..).zip(front) {
+            let draft = &robot.draft;
+            add(
+                "front/",
+                &draft.links,
+                &draft.limits,
+                format!("robot-{number:02}"),
+            );
+        }
+        if let Some(winner) = self.winner {
+            files.push(("robot_study.toml".into(), self.estimate_study(winner)));
+        }
+        files
+    }
+
+    /// A study that measures the winner anew.
+    fn estimate_study(&self, winner: &Winner) -> String {
+        let robot = self.robot(&winner.draft.links);
+        let limits = DegreeLimits::from_limits(&winner.draft.limits, &robot);
+        format!(
+            "# Measures the robot found anew, on other samples.\nkind = \"estimate\"\ndesign = \
+             \"robot.toml\"\nseed = 2\n\n[task]\nspace = \"{}\"\nmargin_deg = \
+             {}\n\n[limits]\nlower_deg = {:?}\nupper_deg = {:?}\n\n[estimator]\nmethod = \
+             \"hybrid\"\n",
+            self.study.task, self.study.margin_deg, limits.lower_deg, limits.upper_deg
+        )
     }
 
     fn to_json(&self) -> Value {

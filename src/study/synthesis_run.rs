@@ -192,10 +192,13 @@ impl Run<'_> {
         self.check_interrupt()?;
         let margins = problem.margin_curve(&arm, &atlas, &draft.limits, &margins());
         let counts = atlas.counts();
+        let map = atlas.share_map(&draft.limits, &problem.failures);
         drop(atlas);
         Ok(Winner {
             draft: draft.clone(),
             counts,
+            map,
+            reach: arm.extent.reach,
             measures,
             margins,
             check: self.check(&arm, draft)?,
@@ -285,8 +288,9 @@ impl Run<'_> {
         let measures = problem.measures(&arm, &atlas, &limits);
         Ok(Some(Reference {
             given: self.question.limits.is_some(),
-            limits,
             measures,
+            map: atlas.share_map(&limits, &study.failures),
+            limits,
             verdict,
             arm,
         }))

@@ -15,7 +15,7 @@ pub use assessment::{Bounds, DesignProblem, Draft, Look};
 pub use link_space::{Column, Constants, LinkRow, LinkSpace, Links, Parameter, total_length};
 pub use margin::{AtMargin, MarginCurve};
 pub use measures::{Measures, Merit};
-pub use pareto::{FrontRobot, ParetoSearch, ParetoSettings};
+pub use pareto::{FrontRobot, ParetoSearch, ParetoSettings, merit_values};
 pub use run::{Generation, Stage};
 pub use search::{Finalist, REPLICATES, Synthesis, SynthesisSettings};
 pub use seeds::{Purpose, sample_seed};

@@ -129,12 +129,12 @@ impl ParetoSearch {
 
     /// The front on held-out samples, once the search is done: robots that no other dominates.
     pub fn front(&self) -> Vec<&FrontRobot> {
-        let merits = |robot: &FrontRobot| values(&robot.held_out, &self.merits);
+        let merits = |robot: &FrontRobot| merit_values(&robot.held_out, &self.merits);
         let points: Vec<Vec<f64>> = self.front.iter().map(merits).collect();
         let ranks = ranks(&points);
         let kept = self.front.iter().zip(ranks).filter(|(_, rank)| *rank == 0);
         let mut front: Vec<&FrontRobot> = kept.map(|(robot, _)| robot).collect();
-        let first = |robot: &FrontRobot| values(&robot.held_out, &self.merits)[0];
+        let first = |robot: &FrontRobot| merit_values(&robot.held_out, &self.merits)[0];
         front.sort_by(|a, b| first(b).total_cmp(&first(a)));
         front
     }
@@ -197,7 +197,7 @@ impl ParetoSearch {
     /// Merits, lowered where a bound is missed.
     fn point(&self, problem: &DesignProblem, draft: &Draft) -> Vec<f64> {
         let discount = problem.discount(&draft.measures);
-        let values = values(&draft.measures, &self.merits);
+        let values = merit_values(&draft.measures, &self.merits);
         values.into_iter().map(|value| value * discount).collect()
     }
 
@@ -287,7 +287,8 @@ impl ParetoSearch {
     }
 }
 
-fn values(measures: &Measures, merits: &[Merit]) -> Vec<f64> {
+/// The values of several merits.
+pub fn merit_values(measures: &Measures, merits: &[Merit]) -> Vec<f64> {
     merits.iter().map(|m| measures.merit(*m).value).collect()
 }
 

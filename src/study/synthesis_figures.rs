@@ -1,0 +1,215 @@
+//! The figures of `kind = "synthesis"`.
+
+use super::robot_view::spatial_robot;
+use super::synthesis_page::{is_share, merit_text};
+use super::synthesis_result::{Reference, SynthesisFinding, Winner};
+use crate::report::{
+    DesignParameter, Figure, HistoryGeneration, HistoryStage, PairedRobot, ParameterSensitivity,
+    ParameterSensitivityFigure, RobotPairFigure, SearchHistoryFigure, SectionOf, SectionPairFigure,
+    TradeOffFigure, TradeOffObjective, TradeOffPoint,
+};
+use crate::synthesis::{
+    Column, Measures, Merit, ParetoSearch, Perturbed, Stage, Synthesis, merit_values,
+};
+
+/// Merits in a few words, for axes.
+fn axis(merit: Merit) -> &'static str {
+    match merit {
+        Merit::Share => "S_F / S₀ₘₐₓ",
+        Merit::BallShare => "ball share",
+        Merit::SizePerLength => "S_F / length^d",
+        Merit::PreFailureShare => "pre-failure share",
+        Merit::Survival => "survival W_F / W_0",
+        Merit::Slenderness => "reach / total length",
+    }
+}
+
+fn unit(merit: Merit) -> &'static str {
+    if is_share(merit) { "%" } else { "" }
+}
+
+fn scale(merit: Merit) -> f64 {
+    if is_share(merit) { 100.0 } else { 1.0 }
+}
+
+impl SynthesisFinding<'_> {
+    /// All figures that there is something for.
+    pub(super) fn figures(&self) -> Vec<Box<dyn Figure + '_>> {
+        let mut figures: Vec<Box<dyn Figure>> = Vec::new();
+        if let (Some(search), Some(winner)) = (self.search, self.winner) {
+            if let Some(reference) = self.reference {
+                figures.push(Box::new(self.pair(winner, reference)));
+                figures.push(Box::new(self.workspaces(winner, reference)));
+            }
+            figures.push(Box::new(self.history(search, winner)));
+            if !winner.sensitivity.is_empty() {
+                figures.push(Box::new(self.sensitivity(winner)));
+            }
+        }
+        if let Some(pareto) = self.pareto {
+            figures.push(Box::new(self.front_figure(pareto)));
+        }
+        figures
+    }
+
+    fn titles(&self, winner: &Winner, reference: &Reference) -> [String; 2] {
+        let merit = self.question.search.objectives[0];
+        let text = |measures: &Measures| merit_text(merit, &measures.merit(merit));
+        [
+            format!(
+                "{}: {}",
+                self.study.design.robot.name,
+                text(&reference.measures)
+            ),
+            format!("found: {}", text(&winner.measures)),
+        ]
+    }
+
+    fn pair(&self, winner: &Winner, reference: &Reference) -> RobotPairFigure<'static> {
+        let [old, new] = self.titles(winner, reference);
+        let found = self.robot(&winner.draft.links);
+        RobotPairFigure {
+            robots: [
+                PairedRobot::Spatial(spatial_robot(&self.study.design.robot, old)),
+                PairedRobot::Spatial(spatial_robot(&found, new)),
+            ],
+        }
+    }
+
+    fn workspaces<'a>(
+        &self,
+        winner: &'a Winner,
+        reference: &'a Reference,
+    ) -> SectionPairFigure<'a> {
+        let [old, new] = self.titles(winner, reference);
+        SectionPairFigure {
+            robots: [
+                SectionOf {
+                    title: old,
+                    map: &reference.map,
+                    reach: reference.arm.extent.reach,
+                },
+                SectionOf {
+                    title: new,
+                    map: &winner.map,
+                    reach: winner.reach,
+                },
+            ],
+        }
+    }
+
+    fn history(&self, search: &Synthesis, winner: &Winner) -> SearchHistoryFigure {
+        let merit = self.question.search.objectives[0];
+        let percent = scale(merit);
+        let mut stages: Vec<(u32, Stage, HistoryStage)> = Vec::new();
+        let runs = self.question.search.effort.runs;
+        let mut trials = 0;
+        for generation in search.history() {
+            let is_new = stages
+                .last()
+                .is_none_or(|last| (last.0, last.1) != (generation.run, generation.stage));
+            if is_new {
+                trials += 1;
+                let name = match generation.stage {
+                    Stage::Lengths if trials <= runs => format!("trial {trials}"),
+                    Stage::Lengths => "lengths".into(),
+                    Stage::All => "twists free".into(),
+                    Stage::RightAngles => "right angles".into(),
+                };
+                let generations = Vec::new();
+                let stage = HistoryStage { name, generations };
+                stages.push((generation.run, generation.stage, stage));
+            }
+            if let Some((_, _, stage)) = stages.last_mut() {
+                let [upper, median, lower] = generation.quartiles.map(|score| percent * score);
+                stage.generations.push(HistoryGeneration {
+                    at: generation.evaluations as f64,
+                    best: percent * generation.best,
+                    median,
+                    quartiles: [lower, upper],
+                });
+            }
+        }
+        let reported = winner.measures.merit(merit);
+        SearchHistoryFigure {
+            score_label: axis(merit).into(),
+            unit: unit(merit).into(),
+            axis_label: "robots assessed".into(),
+            stages: stages.into_iter().map(|(_, _, stage)| stage).collect(),
+            reported: Some([percent * reported.value, percent * reported.error]),
+            title: self.study.name.clone(),
+        }
+    }
+
+    fn sensitivity(&self, winner: &Winner) -> ParameterSensitivityFigure {
+        let asked = &self.question.search;
+        let merit = asked.objectives[0];
+        let percent = scale(merit);
+        let parameter = |sensitivity: &crate::synthesis::ParameterSensitivity| {
+            let changes = sensitivity.change;
+            ParameterSensitivity {
+                parameter: match sensitivity.what {
+                    Perturbed::Link(row, Column::Twist) => DesignParameter::Twist(row + 1),
+                    Perturbed::Link(row, Column::Length) => DesignParameter::Length(row + 1),
+                    Perturbed::Link(row, Column::Offset) => DesignParameter::Offset(row + 1),
+                    Perturbed::Lower(joint) => DesignParameter::LowerLimit(joint + 1),
+                    Perturbed::Upper(joint) => DesignParameter::UpperLimit(joint + 1),
+                },
+                change: changes.map(|change| percent * change.value),
+                error: changes.map(|change| percent * change.error),
+            }
+        };
+        ParameterSensitivityFigure {
+            score_label: axis(merit).into(),
+            tolerance: format!(
+                "lengths ±{} mm, angles ±{}°",
+                1000.0 * asked.tolerance,
+                asked.tolerance_deg
+            ),
+            parameters: winner.sensitivity.iter().map(parameter).collect(),
+            title: self.study.name.clone(),
+        }
+    }
+
+    fn front_figure(&self, pareto: &ParetoSearch) -> TradeOffFigure {
+        let merits = pareto.merits();
+        let scaled = |values: &[f64]| -> Vec<f64> {
+            let pairs = values.iter().zip(merits);
+            pairs.map(|(value, merit)| scale(*merit) * value).collect()
+        };
+        let point = |label: String, measures: &Measures, is_on_front: bool| {
+            let errors: Vec<f64> = merits.iter().map(|m| measures.merit(*m).error).collect();
+            TradeOffPoint {
+                label,
+                values: scaled(&merit_values(measures, merits)),
+                errors: scaled(&errors),
+                is_on_front,
+            }
+        };
+        let front = pareto.front();
+        let named = self.reference.map(|reference| {
+            point(
+                self.study.design.robot.name.clone(),
+                &reference.measures,
+                false,
+            )
+        });
+        TradeOffFigure {
+            objectives: merits
+                .iter()
+                .map(|merit| TradeOffObjective {
+                    name: axis(*merit).into(),
+                    unit: unit(*merit).into(),
+                    is_larger_better: true,
+                })
+                .collect(),
+            points: front
+                .iter()
+                .map(|robot| point(String::new(), &robot.held_out, true))
+                .collect(),
+            named: named.into_iter().collect(),
+            searched: pareto.seen().iter().map(|values| scaled(values)).collect(),
+            title: self.study.name.clone(),
+        }
+    }
+}
