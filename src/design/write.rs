@@ -83,23 +83,27 @@ fn rows(convention: Convention, joints: &[Joint]) -> String {
             JointKind::Prismatic => "\"prismatic\",",
         };
         let cells = columns[..shown].iter();
-        let cells: Vec<String> = cells
-            .map(|(key, cells)| format!("{key} = {}", cells[row]))
+        let cells: String = cells
+            .map(|(key, cells)| format!("{key} = {} ", cells[row]))
             .collect();
-        text += &format!("    {{ kind = {kind} {} }},\n", cells.join(", "));
+        let cells = cells.trim_end().trim_end_matches(',');
+        text += &format!("    {{ kind = {kind} {cells} }},\n");
     }
     text + "]  # metres\n"
 }
 
-/// The numbers of a column, padded to one width and with their points below each other.
+/// The numbers of a column with a comma behind each, their points below each other and padded to
+/// one width.
 fn column(joints: &[Joint], number: impl Fn(&Joint) -> String) -> Vec<String> {
-    let cells: Vec<String> = joints.iter().map(number).collect();
+    let mut cells: Vec<String> = joints.iter().map(number).collect();
     let before = |cell: &String| cell.find('.').unwrap_or(cell.len());
-    let widest = cells.iter().map(before).max().unwrap_or(0);
+    let left = cells.iter().map(before).max().unwrap_or(0);
+    for cell in &mut cells {
+        *cell = format!("{}{cell},", " ".repeat(left - before(cell)));
+    }
+    let width = cells.iter().map(String::len).max().unwrap_or(0);
     let cells = cells.iter();
-    cells
-        .map(|cell| format!("{}{cell}", " ".repeat(widest - before(cell))))
-        .collect()
+    cells.map(|cell| format!("{cell:<width$}")).collect()
 }
 
 fn tool(tool: &Isometry3<f64>) -> String {
@@ -193,12 +197,12 @@ mod tests {
 
     #[test]
     fn rows_stand_below_each_other() {
-        let joints = [[-98.0, 0.17, 0.0, 0.0], [90.0, 1.42, -12.5, 0.0]];
+        let joints = [[-98.0, 0.17, 0.0, 0.0], [90.0, 1.4, -12.5, 0.0]];
         let joints = joints.map(|row| joint(JointKind::Revolute, row)).to_vec();
         let text = robot_to_toml(&rows_of(joints), &["A line.".into(), String::new()]).unwrap();
         let expected = "# A line.\n#\nname = \"r\"\nconvention = \"standard\"\njoints = [\n    \
             { kind = \"revolute\", alpha_deg = -98.0, a = 0.17, d =   0.0 },\n    \
-            { kind = \"revolute\", alpha_deg =  90.0, a = 1.42, d = -12.5 },\n]  # metres\n";
+            { kind = \"revolute\", alpha_deg =  90.0, a = 1.4,  d = -12.5 },\n]  # metres\n";
         assert_eq!(text, expected);
     }
 

@@ -104,14 +104,15 @@ fn push_visual(
     (name, colour): (&str, &str),
 ) {
     let pitch = direction.x.hypot(direction.y).atan2(direction.z);
-    let yaw = direction.y.atan2(direction.x);
+    let is_upright = direction.x == 0.0 && direction.y == 0.0;
+    let yaw = if is_upright {
+        0.0
+    } else {
+        direction.y.atan2(direction.x)
+    };
     let origin = Origin {
         xyz: [centre.x, centre.y, centre.z].map(round),
-        rpy: [
-            0.0,
-            round(pitch),
-            if pitch == 0.0 { 0.0 } else { round(yaw) },
-        ],
+        rpy: [0.0, pitch, yaw],
     };
     text.push_str("    <visual>");
     origin.push(text);
