@@ -13,10 +13,10 @@ use crate::workspace::hybrid::Atlas;
 const PROBES: usize = 256;
 
 /// Limits drawn around surviving samples.
-const SURVIVORS: usize = 512;
+const SURVIVORS: usize = 4096;
 
 /// How many of them the search begins with.
-const KEPT: usize = 8;
+const KEPT: usize = 12;
 
 /// The random stream of the probes: no restart of a search has this number.
 const PROBING: u64 = u64::MAX - 1;
