@@ -1,5 +1,6 @@
 //! Runs a study with the hybrid estimator: traces an atlas, then scores limits over it.
 
+use super::first_candidates::first_candidates;
 use super::hybrid_arm::{Needed, Samples, check_cache};
 use super::hybrid_result::HybridFinding;
 use super::hybrid_sensitivity::sensitivity;
@@ -136,14 +137,14 @@ impl Run<'_> {
             finalists: part.finalists,
         });
         let objective = score(atlas);
-        let start = optimise.start.as_ref();
-        let start = start.map(|start| space.point(&start.to_limits(robot)));
+        let first = scores.first().unwrap_or(&objective);
+        let starts = first_candidates(study, optimise, &space, first, atlas);
         let terms = Terms {
             space: &space,
             objective: &objective,
             samples: Some(atlas.plan().len()),
             coarse: coarse.collect(),
-            start,
+            starts,
             max_sweeps: SWEEPS,
             tolerance: TOLERANCE,
             short_step: SHORT_STEP,

@@ -8,6 +8,7 @@ mod as_run;
 mod checkpoint;
 mod failure_run;
 mod file;
+mod first_candidates;
 mod folder;
 mod hybrid_arm;
 mod hybrid_result;

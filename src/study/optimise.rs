@@ -45,8 +45,8 @@ pub(super) struct Terms<'a> {
     pub samples: Option<u64>,
     /// Cheaper estimates of the same score, coarsest first, with which coordinate ascent begins.
     pub coarse: Vec<Coarse<'a>>,
-    /// A first candidate.
-    pub start: Option<Vec<f64>>,
+    /// First candidates, beside random ones.
+    pub starts: Vec<Vec<f64>>,
     /// Most sweeps: fewer where a score costs milliseconds.
     pub max_sweeps: usize,
     /// Least relative gain of a sweep that counts: no less than what the score is good to.
@@ -291,7 +291,7 @@ fn global_stage(
     session: &Session,
 ) -> Result<Ended, RunError> {
     let (objective, samples) = terms.first(optimise);
-    let starts: Vec<Vec<f64>> = terms.start.iter().cloned().collect();
+    let starts = terms.starts.clone();
     let mut ended = match (&optimise.optimiser, saved) {
         (OptimiserSettings::CoordinateAscent(ascent), saved) => {
             let saved = match saved {

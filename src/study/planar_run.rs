@@ -74,11 +74,11 @@ fn find(
     let start = optimise.start.as_ref();
     let limits = start.map(|start| arm.to_links(&start.to_limits(&study.design.robot)));
     let pose = arm.is_pose();
-    let start = limits.map(|limits| space.point(&limits));
+    let starts = limits.iter().map(|limits| space.point(limits)).collect();
     let terms = Terms {
         space: &space,
         objective: &objective,
-        start,
+        starts,
         samples: None,
         coarse: Vec::new(),
         short_step: CoordinateAscentSettings::default().short_step,

@@ -49,7 +49,7 @@ pub(super) fn search_through(
         objective: &objective,
         samples: None,
         coarse: Vec::new(),
-        start: terms.start.clone(),
+        starts: terms.starts.clone(),
         max_sweeps: terms.max_sweeps,
         tolerance: terms.tolerance,
         short_step: terms.short_step,

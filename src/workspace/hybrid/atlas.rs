@@ -20,7 +20,7 @@ use std::time::Instant;
 pub(super) const SHARD: u64 = 1024;
 
 /// Changes whenever the content of a block changes for the same question.
-const FORMAT: u32 = 2;
+const FORMAT: u32 = 3;
 
 /// Tolerance of the curves behind a focused atlas, as a share of the usual one.
 const FOCUSED: f64 = 1.0 / 16.0;

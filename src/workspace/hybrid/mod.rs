@@ -20,6 +20,7 @@ mod profile;
 mod score;
 mod sizes;
 mod store;
+mod survivors;
 mod thin;
 mod turn16;
 
