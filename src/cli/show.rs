@@ -5,9 +5,7 @@ use super::{Ending, output};
 use crate::design::{Robot, TaskSpace, read_design};
 use crate::kinematics::workspace_extent;
 use crate::manifold::Intolerance;
-use crate::report::{
-    Figure, RobotFigure, figure_png, figure_svg, plain, write_bytes,
-};
+use crate::report::{Figure, RobotFigure, figure_png, figure_svg, plain, write_bytes};
 use crate::study::spatial_robot;
 use crate::workspace::planar::PlanarPosition;
 use std::fmt::Write;

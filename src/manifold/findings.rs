@@ -27,6 +27,10 @@ pub(crate) struct Findings<const N: usize> {
     pub seeds: usize,
     /// Starts that found the task.
     pub landed: usize,
+    /// Vertices traced, known curves included.
+    vertices: usize,
+    /// Whether the search ended because it had traced too many.
+    gave_up: bool,
     /// Whether all joints turn.
     revolute: bool,
 }
@@ -39,6 +43,8 @@ impl<const N: usize> Findings<N> {
             found: 0,
             seeds: 0,
             landed: 0,
+            vertices: 0,
+            gave_up: false,
             revolute: true,
         }
     }
@@ -66,6 +72,8 @@ impl<const N: usize> Findings<N> {
         self.found = 0;
         self.landed = 0;
         self.seeds = 0;
+        self.vertices = 0;
+        self.gave_up = false;
         let lanes: Goal<Lanes> = goal.splat();
         let mut seeder = Seeder::new(kernel, rng);
         let mut landed: Vec<[f64; N]> = Vec::with_capacity(8);
@@ -84,6 +92,10 @@ impl<const N: usize> Findings<N> {
                 if !self.recognise(seed, corrected.as_ref()) {
                     let start = corrected.map_or(*seed, |(point, _)| point);
                     self.trace(prober, &wrapped(&start), settings).await;
+                }
+                self.gave_up = self.vertices >= settings.most_vertices;
+                if self.gave_up {
+                    return;
                 }
             }
         }
@@ -116,9 +128,9 @@ impl<const N: usize> Findings<N> {
     }
 
     /// Whether every curve closed smoothly (or ends at a stroke) and the winding vectors sum to
-    /// zero.
+    /// zero, and the search was not cut short.
     pub fn is_sound(&self) -> bool {
-        self.curves().iter().all(Curve::is_smooth) && !self.is_unbalanced()
+        self.curves().iter().all(Curve::is_smooth) && !self.is_unbalanced() && !self.gave_up
     }
 
     /// Counts `seed` for the curve it lies on, if that is known already.
@@ -153,6 +165,7 @@ impl<const N: usize> Findings<N> {
         let (old, new) = self.curves.split_at_mut(self.found);
         let curve = &mut new[0];
         trace(prober, start, &settings.trace, curve).await;
+        self.vertices += curve.points.len();
         // A point may miss its own curve between two long steps.
         match old.iter().position(|old| is_same(old, curve)) {
             Some(index) => self.hits[index] += 1,

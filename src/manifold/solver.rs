@@ -27,6 +27,9 @@ pub struct SearchSettings {
     pub most_seeds: usize,
     /// Starts without any solution after which the task point counts as out of reach.
     pub unreachable_after: usize,
+    /// Vertices traced for one task point after which its search ends, incomplete: what keeps
+    /// robots whose pre-images are singular throughout from taking hours.
+    pub most_vertices: usize,
     /// How curves are traced.
     pub trace: TraceSettings,
 }
@@ -40,6 +43,7 @@ impl Default for SearchSettings {
             least_hits: 6,
             most_seeds: 1000,
             unreachable_after: 128,
+            most_vertices: 1_000_000,
             trace: TraceSettings::default(),
         }
     }
@@ -54,6 +58,7 @@ impl SearchSettings {
             least_hits: 4,
             most_seeds: 300,
             unreachable_after: 32,
+            most_vertices: 20_000,
             trace: TraceSettings::coarse(),
         }
     }
