@@ -9,6 +9,7 @@ mod atlas;
 mod block;
 mod build;
 mod clip;
+mod dexterity;
 mod family;
 mod first_joint;
 mod lanes;
@@ -23,6 +24,7 @@ mod thin;
 mod turn16;
 
 pub use atlas::{Atlas, AtlasError, AtlasRecipe, AtlasSettings, Prediction};
+pub use dexterity::Dexterity;
 pub use family::Growth;
 pub use plan::{Region, Sample, SamplePlan, Sampling};
 pub use score::Rule;
