@@ -183,7 +183,7 @@ impl Arm {
         }
         let eigen = (&jacobian * jacobian.transpose()).symmetric_eigen();
         let (least, most) = (eigen.eigenvalues.min(), eigen.eigenvalues.max());
-        if !(least > SINGULAR * most) {
+        if least <= SINGULAR * most {
             return [0.0; 2];
         }
         // Row norms of the null space are what the row space leaves of unit vectors:
