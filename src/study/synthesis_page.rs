@@ -178,6 +178,21 @@ impl SynthesisFinding<'_> {
             add(merit_label(merit), &|m| merit_text(merit, &m.merit(merit)));
         }
         add("S_0max / ball of the reach", &|m| percent(&m.fill));
+        if let Some(dexterity) = &winner.dexterity {
+            for (name, value) in [
+                (
+                    "least null-vector component, mean over W_F",
+                    dexterity.null_component,
+                ),
+                (
+                    "1 / condition number, mean over W_F",
+                    dexterity.inverse_condition,
+                ),
+            ] {
+                let value = with_error(value.value, value.error);
+                table.rows.push(vec![name.to_owned(), value]);
+            }
+        }
         Section {
             heading: "Merits".into(),
             text: "Measured on samples that were used for nothing else, ± one standard error. The \

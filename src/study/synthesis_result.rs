@@ -14,7 +14,7 @@ use crate::synthesis::{
     Arm, Column, Draft, Finalist, FrontRobot, Links, MarginCurve, Measures, Merit,
     ParameterSensitivity, ParetoSearch, Perturbed, Synthesis,
 };
-use crate::workspace::hybrid::SampleCounts;
+use crate::workspace::hybrid::{Dexterity, SampleCounts};
 use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate, SpatialShareMap};
 use serde_json::{Value, json};
 
@@ -29,6 +29,9 @@ pub(super) struct Winner {
     pub reach: f64,
     /// The share when joints overshoot their limits.
     pub margins: MarginCurve,
+    /// Of the best configurations inside the limits; with more than one degree of redundancy there
+    /// is none.
+    pub dexterity: Option<Dexterity>,
     /// The estimate by inverse kinematics with locked joints, if it was asked for.
     pub check: Option<LockedJointEstimate>,
     /// Change of the merit with every parameter; empty if it was not asked for.
@@ -210,6 +213,13 @@ impl SynthesisFinding<'_> {
             "search_bias": best_seen - reported.value,
         });
         result["margin"] = margins(&winner.margins);
+        if let Some(dexterity) = &winner.dexterity {
+            result["dexterity"] = json!({
+                "poses": dexterity.poses,
+                "least_null_vector_component": estimate(&dexterity.null_component),
+                "inverse_condition": estimate(&dexterity.inverse_condition),
+            });
+        }
         if let Some(check) = &winner.check {
             result["locked_joint_check"] = check_json(check, &winner.measures.share);
         }

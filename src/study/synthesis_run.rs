@@ -6,7 +6,7 @@ use super::settings::Study;
 use super::synthesis_check::SynthesisQuestion;
 use super::synthesis_result::{Reference, SynthesisFinding, Winner};
 use crate::synthesis::{
-    Arm, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
+    Arm, Care, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
     REPLICATES, Synthesis, Tolerances, sample_seed,
 };
 use crate::workspace::{ArtificialLimits, FailureSet, LockedJointCheck, LockedJointEstimate};
@@ -57,6 +57,9 @@ fn failures(study: &Study, question: &SynthesisQuestion) -> FailureSet {
         false => FailureSet::any(joints).with_margin(study.failures.margin()),
     }
 }
+
+/// Task points on which dexterity is measured, at most.
+const DEXTEROUS: u64 = 4000;
 
 /// Margins that are reported, radians.
 fn margins() -> Vec<f64> {
@@ -192,6 +195,8 @@ impl Run<'_> {
         self.check_interrupt()?;
         let margins = problem.margin_curve(&arm, &atlas, &draft.limits, &margins());
         let counts = atlas.counts();
+        let (robot, failures) = (&arm.robot, &problem.failures);
+        let dexterity = atlas.dexterity(robot, &draft.limits, failures, DEXTEROUS);
         let map = atlas.share_map(&draft.limits, &problem.failures);
         drop(atlas);
         Ok(Winner {
@@ -201,6 +206,7 @@ impl Run<'_> {
             reach: arm.extent.reach,
             measures,
             margins,
+            dexterity,
             check: self.check(&arm, draft)?,
             sensitivity: self.sensitivity(draft)?,
         })
@@ -277,7 +283,11 @@ impl Run<'_> {
                     replicates: 1,
                 };
                 match problem.atlas(&arm, look, None) {
-                    Some(atlas) => problem.fit(&arm, &atlas, &[], Some(study.seed)),
+                    Some(atlas) => {
+                        // Twice: what is found from scratch is then climbed with care.
+                        let found = problem.fit(&arm, &atlas, &[], Care::Scratch, study.seed);
+                        problem.fit(&arm, &atlas, &[found], Care::Last, study.seed)
+                    }
                     None => return Ok(None),
                 }
             }

@@ -80,8 +80,22 @@ const CLIMBED: usize = 3;
 /// Parts of the circle in which good limits are looked for.
 const BINS: usize = 72;
 
-/// Steps of the sweeps of a refit, radians.
+/// Steps of the sweeps of a refit while searching, radians.
 const STEPS: [f64; 2] = [0.1, 0.04];
+
+/// Steps of the sweeps of the last fit, after one from wall to wall.
+const LAST_STEPS: [f64; 6] = [0.1, 0.06, 0.04, 0.03, 0.02, 0.01];
+
+/// How carefully limits are fitted.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Care {
+    /// From the best of the given starts, a few short sweeps.
+    Refit,
+    /// From scratch as well.
+    Scratch,
+    /// From every given start, with many sweeps: once, for a robot that is to be kept.
+    Last,
+}
 
 /// Power by which falling short of a bound lowers a score.
 const PENALTY: i32 = 3;
@@ -125,18 +139,17 @@ impl DesignProblem {
         DesignSpace::of_robot(&arm.robot, self.task(), self.min_width)
     }
 
-    /// Fits limits to `links` on fresh samples, from the best of `starts`, and from scratch too if
-    /// that is wanted.
+    /// Fits limits to `links` on fresh samples.
     pub fn draft(
         &self,
         links: &Links,
         starts: &[ArtificialLimits],
         look: Look,
-        from_scratch: bool,
+        care: Care,
     ) -> Option<Draft> {
         let arm = Arm::of_links(&self.links, links)?;
         let atlas = self.atlas(&arm, look, None)?;
-        let limits = self.fit(&arm, &atlas, starts, from_scratch.then_some(look.seed));
+        let limits = self.fit(&arm, &atlas, starts, care, look.seed);
         Some(self.draft_of(links, &arm, &atlas, limits))
     }
 
@@ -170,7 +183,8 @@ impl DesignProblem {
         arm: &Arm,
         atlas: &Atlas,
         starts: &[ArtificialLimits],
-        scratch: Option<u64>,
+        care: Care,
+        seed: u64,
     ) -> ArtificialLimits {
         let space = self.limit_space(arm);
         let failures = self.failures.clone();
@@ -181,10 +195,18 @@ impl DesignProblem {
             x: space.point(limits),
             score: objective.score_of(&space.design(&space.point(limits))),
         });
-        if let Some(start) = scored.reduce(|a, b| if b.score > a.score { b } else { a }) {
-            found.push(climb(&objective, start.x, &near));
-        }
-        if let Some(seed) = scratch {
+        let mut starts: Vec<Candidate> = scored.collect();
+        starts.sort_by(|a, b| b.score.total_cmp(&a.score));
+        let (climbed, sweeps) = match care {
+            Care::Last => {
+                let last = LAST_STEPS.map(Reach::Near);
+                (starts.len(), [&[Reach::Whole][..], &last].concat())
+            }
+            _ => (1, near.clone()),
+        };
+        let starts = starts.into_iter().take(climbed);
+        found.extend(starts.map(|start| climb(&objective, start.x, &sweeps)));
+        if care == Care::Scratch {
             let mut drawn = self.random_limits(arm, atlas, &objective, seed);
             drawn.sort_by(|a, b| b.score.total_cmp(&a.score));
             let sweeps = [&[Reach::Whole][..], &near].concat();

@@ -11,7 +11,7 @@ mod seeds;
 mod sensitivity;
 
 pub use arm::Arm;
-pub use assessment::{Bounds, DesignProblem, Draft, Look};
+pub use assessment::{Bounds, Care, DesignProblem, Draft, Look};
 pub use link_space::{Column, Constants, LinkRow, LinkSpace, Links, Parameter, total_length};
 pub use margin::{AtMargin, MarginCurve};
 pub use measures::{Measures, Merit};

@@ -4,7 +4,7 @@
 //! for S_F, widened for more use before a failure, or moved at random. Samples are renewed every
 //! few generations and the population measured again, so that nobody lives on luck.
 
-use super::assessment::{DesignProblem, Draft, Look};
+use super::assessment::{Care, DesignProblem, Draft, Look};
 use super::link_space::Links;
 use super::measures::{Measures, Merit};
 use super::search::REPLICATES;
@@ -172,7 +172,7 @@ impl ParetoSearch {
             };
             match problem.verdict(&links) {
                 Some(_) => None,
-                None => problem.draft(&links, &[], look, true),
+                None => problem.draft(&links, &[], look, Care::Scratch),
             }
         };
         let drafts: Vec<Option<Draft>> = numbers.clone().into_par_iter().map(draft).collect();
@@ -255,7 +255,7 @@ impl ParetoSearch {
         let limits = match action {
             x if x < 0.5 => {
                 let starts = [a.limits.clone()];
-                return problem.draft(&links, &starts, look, false);
+                return problem.draft(&links, &starts, look, Care::Refit);
             }
             x if x < 0.75 => widened(
                 &a.limits,

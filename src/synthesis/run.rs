@@ -1,6 +1,6 @@
 //! CMA-ES over the links of one robot, with limits refitted inside.
 
-use super::assessment::{DesignProblem, Draft, Look};
+use super::assessment::{Care, DesignProblem, Draft, Look};
 use super::link_space::{Column, Links};
 use super::seeds::{Purpose, sample_seed};
 use crate::optimiser::CmaEs;
@@ -114,9 +114,12 @@ impl Run {
         let assess = |(index, x): (usize, &Vec<f64>)| {
             let mut links = problem.links.at(&self.links, &self.variables, x);
             let (scale, reach) = problem.links.settle(&mut links);
-            let from_scratch = (index + generation as usize) % FROM_SCRATCH == 0;
+            let care = match (index + generation as usize) % FROM_SCRATCH {
+                0 => Care::Scratch,
+                _ => Care::Refit,
+            };
             let draft = match (reach - 1.0).abs() < 0.01 {
-                true => problem.draft(&links, &self.inherited, look, from_scratch),
+                true => problem.draft(&links, &self.inherited, look, care),
                 false => None,
             };
             // The point that was assessed, at the size that was drawn.

@@ -3,7 +3,7 @@
 //! It goes in steps of seconds at most; between two of them its state can be saved, and goes on
 //! to the same end.
 
-use super::assessment::{DesignProblem, Draft, Look};
+use super::assessment::{Care, DesignProblem, Draft, Look};
 use super::link_space::{Column, Links};
 use super::run::{Generation, Run, RunSettings, Stage};
 use super::seeds::{Purpose, sample_seed};
@@ -228,7 +228,7 @@ impl Synthesis {
                 let verdict = problem.verdict(&links);
                 match verdict {
                     Some(_) => None,
-                    None => problem.draft(&links, &[], look, true),
+                    None => problem.draft(&links, &[], look, Care::Scratch),
                 }
             })
             .collect();
@@ -260,7 +260,7 @@ impl Synthesis {
         };
         let again = |draft: &Draft| {
             let starts = [draft.limits.clone()];
-            problem.draft(&draft.links, &starts, look, true)
+            problem.draft(&draft.links, &starts, look, Care::Scratch)
         };
         self.evaluations += self.drafts.len() as u64;
         self.drafts = self.drafts.par_iter().filter_map(again).collect();
@@ -389,7 +389,7 @@ impl Synthesis {
             seed: sample_seed(self.seed, Purpose::Fit, 0),
             replicates: 1,
         };
-        let mut draft = problem.draft(links, &limits, look, false)?;
+        let mut draft = problem.draft(links, &limits, look, Care::Last)?;
         if is_round && self.settings.round_limit > 0.0 {
             draft.limits = problem.rounded_limits(&draft.limits, self.settings.round_limit);
         }

@@ -91,6 +91,8 @@ pub struct Atlas {
     pub(super) physical: Vec<Arc>,
     /// Half the distance between slices along every joint, radians.
     pub(super) slabs: Vec<f64>,
+    /// Whether it holds images of one box only, and no configurations.
+    pub(super) is_focused: bool,
     pub(super) shards: Vec<ShardBytes>,
 }
 
@@ -229,6 +231,7 @@ impl AtlasRecipe {
                 None => self.source.slabs(),
                 Some(_) => vec![0.0; self.robot.joints()],
             },
+            is_focused: self.packing.focus.is_some(),
             shards,
         })
     }

@@ -10,6 +10,7 @@ mod block;
 mod build;
 mod clip;
 mod coverage;
+mod dexterity;
 mod family;
 mod first_joint;
 mod lanes;
@@ -25,6 +26,7 @@ mod thin;
 mod turn16;
 
 pub use atlas::{Atlas, AtlasError, AtlasRecipe, AtlasSettings, Prediction};
+pub use dexterity::Dexterity;
 pub use family::Growth;
 pub use plan::{Region, Sample, SamplePlan, Sampling};
 pub use score::Rule;

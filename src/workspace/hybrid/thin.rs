@@ -64,6 +64,7 @@ impl Atlas {
             joints: self.joints,
             physical: self.physical.clone(),
             slabs: self.slabs.clone(),
+            is_focused: self.is_focused,
             shards: self
                 .shards
                 .par_chunks(chunk as usize)
