@@ -52,6 +52,12 @@ impl SynthesisFinding<'_> {
         figures
     }
 
+    /// Above a figure: underscores of a file's name would lower what follows.
+    fn heading(&self) -> String {
+        let title = self.study.title.clone();
+        title.unwrap_or_else(|| self.study.name.replace('_', " "))
+    }
+
     fn titles(&self, winner: &Winner, reference: &Reference) -> [String; 2] {
         let merit = self.question.search.objectives[0];
         let text = |measures: &Measures| merit_text(merit, &measures.merit(merit));
@@ -111,7 +117,7 @@ impl SynthesisFinding<'_> {
             if is_new {
                 trials += 1;
                 let name = match generation.stage {
-                    Stage::Lengths if trials <= runs => format!("trial {trials}"),
+                    Stage::Lengths if trials <= runs && runs > 1 => format!("trial {trials}"),
                     Stage::Lengths => "lengths".into(),
                     Stage::All => "twists free".into(),
                     Stage::RightAngles => "right angles".into(),
@@ -137,7 +143,7 @@ impl SynthesisFinding<'_> {
             axis_label: "robots assessed".into(),
             stages: stages.into_iter().map(|(_, _, stage)| stage).collect(),
             reported: Some([percent * reported.value, percent * reported.error]),
-            title: self.study.name.clone(),
+            title: self.heading(),
         }
     }
 
@@ -167,7 +173,7 @@ impl SynthesisFinding<'_> {
                 asked.tolerance_deg
             ),
             parameters: winner.sensitivity.iter().map(parameter).collect(),
-            title: self.study.name.clone(),
+            title: self.heading(),
         }
     }
 
@@ -209,7 +215,7 @@ impl SynthesisFinding<'_> {
                 .collect(),
             named: named.into_iter().collect(),
             searched: pareto.seen().iter().map(|values| scaled(values)).collect(),
-            title: self.study.name.clone(),
+            title: self.heading(),
         }
     }
 }
