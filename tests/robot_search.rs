@@ -4,6 +4,7 @@
 use faultspace::design::{Convention, Geometry, Joint, JointKind, Link, Robot, TaskSpace};
 use faultspace::design::{parse_design, read_design};
 use faultspace::diagnostic::Source;
+use faultspace::manifold::{Completeness, PreImageSearch, SearchSettings};
 use faultspace::study::{Progress, RunError, RunOptions, Study, run};
 use faultspace::synthesis::{
     Arm, Bounds, Care, Column, DesignProblem, LinkRow, LinkSpace, Look, Merit, Parameter,
@@ -265,7 +266,6 @@ fn robots_of_singular_structure_do_not_hang() {
         seed: 1,
         replicates: 1,
     };
-    let mut failed = 0;
     for number in 0..24 {
         let seed = sample_seed(9, Purpose::Robot, number);
         let mut links = problem

@@ -17,7 +17,7 @@ mod sine;
 
 pub use chain::{Chain, ChainJoint, JointScale, joint_scales};
 pub use derivative::Differential;
-pub use extent::{Extent, workspace_extent, workspace_reach};
+pub use extent::{Extent, rough_extent, rough_reach, workspace_extent};
 pub use fixed::{fixed_transforms, joint_motion};
 pub use forward::{joint_frames, reach_bound, tool_frame};
 pub use kernel::{Goal, Kernel, Linearisation};

@@ -187,7 +187,8 @@ impl Run<'_> {
         self.tell(0.82, draft.score, "measuring the winner on fresh samples");
         let problem = &self.problem;
         let nothing = || anyhow::anyhow!("the winner reaches nothing");
-        let arm = Arm::of_links(&problem.links, &draft.links).ok_or_else(nothing)?;
+        let robot = problem.links.robot(&draft.links, 1.0, "winner");
+        let arm = Arm::of_robot(&robot, self.study.task).ok_or_else(nothing)?;
         let atlas = problem
             .atlas(&arm, self.report_look(), Some(&draft.limits))
             .ok_or_else(nothing)?;

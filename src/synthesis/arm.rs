@@ -3,7 +3,7 @@
 
 use super::link_space::{Column, LinkSpace, Links, total_length};
 use crate::design::{Convention, Geometry, Robot, TaskSpace};
-use crate::kinematics::{Extent, workspace_extent};
+use crate::kinematics::{Extent, rough_extent, workspace_extent};
 use nalgebra::Isometry3;
 
 /// A robot with its proportions.
@@ -19,9 +19,12 @@ pub struct Arm {
 }
 
 impl Arm {
-    /// The robot of `links` at reach 1; `None` for a robot that reaches nothing.
+    /// The robot of `links` at reach 1, one of many: its extent is a rough one. `None` for a robot
+    /// that reaches nothing.
     pub fn of_links(space: &LinkSpace, links: &Links) -> Option<Arm> {
-        Arm::new(space.robot(links, 1.0, "candidate"), total_length(links))
+        let robot = space.robot(links, 1.0, "candidate");
+        let extent = rough_extent(&robot)?;
+        Arm::new(robot, extent, total_length(links))
     }
 
     /// `robot` without the constants that change no size of `task`: what stands before joint 1,
@@ -60,11 +63,11 @@ impl Arm {
                 }
             }
         }
-        Arm::new(robot, length)
+        let extent = workspace_extent(&robot)?;
+        Arm::new(robot, extent, length)
     }
 
-    fn new(robot: Robot, length: f64) -> Option<Arm> {
-        let extent = workspace_extent(&robot)?;
+    fn new(robot: Robot, extent: Extent, length: f64) -> Option<Arm> {
         (extent.reach > 0.0 && length > 0.0).then_some(Arm {
             robot,
             extent,

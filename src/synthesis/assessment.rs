@@ -69,8 +69,8 @@ pub struct Look {
     pub replicates: u32,
 }
 
-/// How far a sampled region reaches beyond the workspace: round-off must not cut it.
-const MARGIN: f64 = 1e-3;
+/// How far a sampled region reaches beyond the workspace, whose extent may be a rough one.
+const MARGIN: f64 = 2e-3;
 
 /// Random limits from which a fit from scratch begins, and how many of the best it climbs from.
 const DRAWS: usize = 48;
@@ -85,6 +85,9 @@ const STEPS: [f64; 2] = [0.1, 0.04];
 
 /// Steps of the sweeps of the last fit, after one from wall to wall.
 const LAST_STEPS: [f64; 6] = [0.1, 0.06, 0.04, 0.03, 0.02, 0.01];
+
+/// Most sweeps over all ends of rounded limits.
+const ROUNDING_SWEEPS: usize = 4;
 
 /// How carefully limits are fitted.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -261,20 +264,73 @@ impl DesignProblem {
             .collect()
     }
 
-    /// `limits` with both ends at multiples of `step` (radians), no narrower than allowed.
-    pub fn rounded_limits(&self, limits: &ArtificialLimits, step: f64) -> ArtificialLimits {
-        let round = |limit: &JointLimit| {
-            if limit.is_full() {
-                return JointLimit::FREE;
+    /// `limits` with both ends at multiples of `step` (radians), no narrower than allowed; ends are
+    /// moved by one step as long as that helps on fresh samples.
+    pub fn rounded_limits(
+        &self,
+        links: &Links,
+        limits: &ArtificialLimits,
+        step: f64,
+        look: Look,
+    ) -> Option<ArtificialLimits> {
+        let arm = Arm::of_links(&self.links, links)?;
+        let atlas = self.atlas(&arm, look, None)?;
+        let score = |limits: &ArtificialLimits| atlas.fault_tolerant_size(limits, &self.failures);
+        let round = limits.joints().iter().map(|limit| self.rounded(limit, step));
+        let mut best = ArtificialLimits::new(round.collect());
+        let mut most = score(&best);
+        for _ in 0..ROUNDING_SWEEPS {
+            let before = most;
+            for moved in self.neighbours(&arm, &best, step) {
+                let mut joints = best.joints().to_vec();
+                joints[moved.0] = self.rounded(&moved.1, step);
+                let candidate = ArtificialLimits::new(joints);
+                let size = score(&candidate);
+                if size > most {
+                    (best, most) = (candidate, size);
+                }
             }
-            let [lower, upper] = [limit.lower, limit.upper].map(|end| (end / step).round() * step);
-            let missing = (self.min_width - (upper - lower)).max(0.0);
-            JointLimit::new(
-                lower,
-                upper + (missing / step - 1e-9).ceil().max(0.0) * step,
-            )
-        };
-        ArtificialLimits::new(limits.joints().iter().map(round).collect())
+            if most <= before {
+                break;
+            }
+        }
+        Some(best)
+    }
+
+    fn rounded(&self, limit: &JointLimit, step: f64) -> JointLimit {
+        if limit.is_full() {
+            return JointLimit::FREE;
+        }
+        let [lower, upper] = [limit.lower, limit.upper].map(|end| (end / step).round() * step);
+        let missing = (self.min_width - (upper - lower)).max(0.0);
+        JointLimit::new(lower, upper + (missing / step - 1e-9).ceil().max(0.0) * step)
+    }
+
+    /// Every joint's limits with one end a step away; both ends where they stay symmetric.
+    fn neighbours(
+        &self,
+        arm: &Arm,
+        limits: &ArtificialLimits,
+        step: f64,
+    ) -> Vec<(usize, JointLimit)> {
+        let space = self.limit_space(arm);
+        let mut all = Vec::new();
+        for (joint, limit) in limits.joints().iter().enumerate() {
+            if limit.is_full() {
+                continue;
+            }
+            let moves: &[[f64; 2]] = match space.is_centred(joint) {
+                true => &[[-1.0, 1.0], [1.0, -1.0]],
+                false => &[[-1.0, 0.0], [1.0, 0.0], [0.0, -1.0], [0.0, 1.0]],
+            };
+            for [low, high] in moves {
+                let (lower, upper) = (limit.lower + low * step, limit.upper + high * step);
+                if upper - lower >= self.min_width - 1e-9 {
+                    all.push((joint, JointLimit::new(lower, upper)));
+                }
+            }
+        }
+        all
     }
 
     /// All merits of `arm` with `limits` over `atlas`.

@@ -5,7 +5,7 @@
 //! in here; [`LinkSpace::robot`] gives them the wanted reach in metres.
 
 use crate::design::{Convention, Geometry, Joint, JointKind, Link, Robot, TaskSpace};
-use crate::kinematics::workspace_reach;
+use crate::kinematics::rough_reach;
 use nalgebra::Isometry3;
 use rand::Rng;
 use serde::{Deserialize, Serialize};
@@ -79,6 +79,9 @@ const RIGHT_ANGLES: f64 = 0.7;
 
 /// Robots of a smaller reach are points.
 const LEAST_REACH: f64 = 1e-6;
+
+/// A reach this near to 1 is 1: the reach itself is not known better.
+const SETTLED: f64 = 1e-4;
 
 /// Rounds of scaling and putting back into bounds; each changes the reach less.
 const ROUNDS: usize = 6;
@@ -163,7 +166,7 @@ impl LinkSpace {
         for _ in 0..ROUNDS {
             self.confine(links);
             let reach = self.reach(links);
-            if reach <= LEAST_REACH || (reach - 1.0).abs() < 1e-9 {
+            if reach <= LEAST_REACH || (reach - 1.0).abs() < SETTLED {
                 return (scale, reach);
             }
             scale *= reach;
@@ -263,7 +266,7 @@ impl LinkSpace {
 
     /// The reach of `links`, in the unit of their lengths; 0 if it cannot be told.
     pub fn reach(&self, links: &Links) -> f64 {
-        workspace_reach(&self.robot(links, 1.0, "")).unwrap_or(0.0)
+        rough_reach(&self.robot(links, 1.0, "")).unwrap_or(0.0)
     }
 }
 

