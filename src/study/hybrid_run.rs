@@ -1,6 +1,6 @@
 //! Runs a study with the hybrid estimator: traces an atlas, then scores limits over it.
 
-use super::first_candidates::first_candidates;
+use super::first_candidates::beginning;
 use super::hybrid_arm::{Needed, Samples, check_cache};
 use super::hybrid_result::HybridFinding;
 use super::hybrid_sensitivity::sensitivity;
@@ -138,13 +138,16 @@ impl Run<'_> {
         });
         let objective = score(atlas);
         let first = scores.first().unwrap_or(&objective);
-        let starts = first_candidates(study, optimise, &space, first, atlas);
+        let begin = beginning(study, optimise, &space, [first, &objective], atlas);
         let terms = Terms {
             space: &space,
             objective: &objective,
             samples: Some(atlas.plan().len()),
-            coarse: coarse.collect(),
-            starts,
+            coarse: match begin.on_all_samples {
+                true => Vec::new(),
+                false => coarse.collect(),
+            },
+            starts: begin.starts,
             max_sweeps: SWEEPS,
             tolerance: TOLERANCE,
             short_step: SHORT_STEP,

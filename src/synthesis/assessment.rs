@@ -276,7 +276,10 @@ impl DesignProblem {
         let arm = Arm::of_links(&self.links, links)?;
         let atlas = self.atlas(&arm, look, None)?;
         let score = |limits: &ArtificialLimits| atlas.fault_tolerant_size(limits, &self.failures);
-        let round = limits.joints().iter().map(|limit| self.rounded(limit, step));
+        let round = limits
+            .joints()
+            .iter()
+            .map(|limit| self.rounded(limit, step));
         let mut best = ArtificialLimits::new(round.collect());
         let mut most = score(&best);
         for _ in 0..ROUNDING_SWEEPS {
@@ -303,7 +306,10 @@ impl DesignProblem {
         }
         let [lower, upper] = [limit.lower, limit.upper].map(|end| (end / step).round() * step);
         let missing = (self.min_width - (upper - lower)).max(0.0);
-        JointLimit::new(lower, upper + (missing / step - 1e-9).ceil().max(0.0) * step)
+        JointLimit::new(
+            lower,
+            upper + (missing / step - 1e-9).ceil().max(0.0) * step,
+        )
     }
 
     /// Every joint's limits with one end a step away; both ends where they stay symmetric.
