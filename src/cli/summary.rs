@@ -33,6 +33,7 @@ pub(super) fn summary(result: &Value, out: &Path) -> String {
     structure(result, &mut text);
     pose(result, &mut text);
     singular(result, &mut text);
+    robots(result, &mut text);
     let slides = limits(&result["limits_m"]);
     let kind = if slides.is_empty() { "" } else { "revolute " };
     for (joint, limits) in limits(&result["limits_deg"]).iter().enumerate() {
@@ -128,6 +129,38 @@ fn singular(result: &Value, text: &mut String) {
     }
 }
 
+/// What a search for robots found: percentages of shares.
+fn robots(result: &Value, text: &mut String) {
+    let mut line = |label: &str, estimate: &Value| {
+        let of = |key: &str| 100.0 * estimate[key].as_f64().unwrap_or(f64::NAN);
+        let value = with_error(of("value"), of("standard_error"));
+        let _ = writeln!(text, "  {label:<25} {value} %");
+    };
+    for (label, estimate) in [
+        ("share S_F / S_0max", &result["merits"]["share"]),
+        ("the same, checked", &result["locked_joint_check"]["share"]),
+        ("of the design", &result["reference"]["merits"]["share"]),
+    ] {
+        if estimate.is_object() {
+            line(label, estimate);
+        }
+    }
+    if let Some(front) = result["front"].as_array() {
+        let _ = writeln!(text, "  {:<25} {}", "robots of the front", front.len());
+    }
+    for (index, row) in result["robot"].as_array().into_iter().flatten().enumerate() {
+        let number = |key: &str| row[key].as_f64().unwrap_or(f64::NAN);
+        let label = format!("joint {}", index + 1);
+        let _ = writeln!(
+            text,
+            "  {label:<25} α {:.2}°, a {:.4} m, d {:.4} m",
+            number("alpha_deg"),
+            number("a"),
+            number("d")
+        );
+    }
+}
+
 /// Pairs of a lower and an upper limit.
 fn limits(limits: &Value) -> Vec<[f64; 2]> {
     let side = |key: &str| limits[key].as_array().cloned().unwrap_or_default();
@@ -171,6 +204,19 @@ mod tests {
         });
         let text = summary(&result, Path::new("x"));
         for part in ["manifolds     2", "9.100, 26.000 rad", "1.5e-2", "yes"] {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+    }
+
+    #[test]
+    fn robots_are_shown_with_their_share() {
+        let result = json!({
+            "study": "d", "kind": "synthesis", "status": "done",
+            "merits": { "share": { "value": 0.1839, "standard_error": 0.0009 } },
+            "robot": [{ "alpha_deg": 90.0, "a": 0.16, "d": -0.12 }],
+        });
+        let text = summary(&result, Path::new("x"));
+        for part in ["18.390 ± 0.090 %", "α 90.00°, a 0.1600 m, d -0.1200 m"] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
     }

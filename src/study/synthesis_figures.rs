@@ -119,6 +119,7 @@ impl SynthesisFinding<'_> {
                 let name = match generation.stage {
                     Stage::Lengths if trials <= runs && runs > 1 => format!("trial {trials}"),
                     Stage::Lengths => "lengths".into(),
+                    Stage::Refined => "refined".into(),
                     Stage::All => "twists free".into(),
                     Stage::RightAngles => "right angles".into(),
                 };

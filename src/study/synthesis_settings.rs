@@ -145,7 +145,7 @@ impl Effort {
         population: 12,
         samples: 800,
         patience: 20,
-        fit_samples: 12_000,
+        fit_samples: 20_000,
         selection_samples: 30_000,
         report_samples: 100_000,
         check_poses: 1000,

@@ -5,9 +5,9 @@
 //! few generations and the population measured again, so that nobody lives on luck.
 
 use super::assessment::{Care, DesignProblem, Draft, Look};
+use super::finalists::REPLICATES;
 use super::link_space::Links;
 use super::measures::{Measures, Merit};
-use super::search::REPLICATES;
 use super::seeds::{Purpose, sample_seed};
 use crate::optimiser::{crowding, ranks, survivors};
 use crate::sampling::stream;

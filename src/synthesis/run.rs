@@ -15,6 +15,8 @@ use serde::{Deserialize, Serialize};
 pub enum Stage {
     /// Lengths and offsets; the twists are those of the start.
     Lengths,
+    /// Lengths and offsets again, with shorter steps and more task points.
+    Refined,
     /// Twists as well.
     All,
     /// Lengths and offsets, with twists that have been rounded to right angles.

@@ -4,12 +4,12 @@
 //! to the same end.
 
 use super::assessment::{Care, DesignProblem, Draft, Look};
-use super::link_space::{Column, Links};
+use super::finalists::{End, Finalist, finalists};
+use super::link_space::Links;
 use super::run::{Generation, Run, RunSettings, Stage};
 use super::seeds::{Purpose, sample_seed};
 use crate::manifold::Intolerance;
 use crate::sampling::stream;
-use crate::workspace::ArtificialLimits;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_2;
@@ -43,23 +43,6 @@ pub struct SynthesisSettings {
     pub round_limit: f64,
 }
 
-/// A finalist with its merits on the samples of the selection, which it was not fitted on.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Finalist {
-    /// What it is.
-    pub name: String,
-    /// The robot as fitted; its own score is that of the fit and biased.
-    pub draft: Draft,
-    /// Merits on the samples of the selection.
-    pub held_out: super::Measures,
-    /// Score there.
-    pub score: f64,
-    /// Its standard error.
-    pub error: f64,
-    /// Whether its numbers are round.
-    pub is_round: bool,
-}
-
 /// Where a search stands.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
@@ -86,7 +69,7 @@ pub struct Synthesis {
     drafts: Vec<Draft>,
     runs: Vec<Run>,
     /// Ends of stages.
-    ends: Vec<(String, Links, Vec<ArtificialLimits>)>,
+    ends: Vec<End>,
     history: Vec<Generation>,
     evaluations: u64,
     finalists: Vec<Finalist>,
@@ -112,9 +95,6 @@ const LATER_SAMPLES: u32 = 2;
 
 /// Twists this near to a right angle become one, radians: beyond, another robot is meant.
 const NEARLY_RIGHT: f64 = 0.35;
-
-/// Independent shifts of selection and report.
-pub const REPLICATES: u32 = 16;
 
 impl Synthesis {
     /// A search for `problem`, from random robots and from `starts`.
@@ -320,7 +300,7 @@ impl Synthesis {
         };
         let before = match run.stage {
             Stage::Lengths => self.settings.trial_generations,
-            Stage::All | Stage::RightAngles => 0,
+            Stage::All | Stage::Refined | Stage::RightAngles => 0,
         };
         let most = u64::from(self.settings.generations + before);
         if run.generations() < most && !run.has_settled() {
@@ -332,17 +312,23 @@ impl Synthesis {
         let name = match stage {
             Stage::Lengths => "lengths",
             Stage::All => "lengths and twists",
+            Stage::Refined => "refined lengths",
             Stage::RightAngles => "right angles",
         };
-        self.ends.push((name.into(), links.clone(), limits.clone()));
+        self.ends.push(End {
+            name: name.into(),
+            links: links.clone(),
+            limits: limits.clone(),
+        });
         let has_twists = problem.links.variables(true).len() > problem.links.variables(false).len();
         let next = match stage {
             Stage::Lengths if has_twists => Some((Stage::All, links)),
+            Stage::Lengths => Some((Stage::Refined, links)),
             Stage::All => {
                 let round = right_angles(problem, &links);
                 round.map(|links| (Stage::RightAngles, links))
             }
-            _ => None,
+            Stage::Refined | Stage::RightAngles => None,
         };
         match next {
             Some((stage, links)) => {
@@ -358,59 +344,11 @@ impl Synthesis {
         }
     }
 
-    /// Fits limits to the end of every stage and to its rounded robot, and compares them.
+    /// Compares the ends of all stages.
     fn choose(&mut self, problem: &DesignProblem) {
-        let mut candidates: Vec<(String, Links, Vec<ArtificialLimits>, bool)> = Vec::new();
-        for (name, links, limits) in &self.ends {
-            candidates.push((name.clone(), links.clone(), limits.clone(), false));
-            if self.settings.round_length > 0.0 {
-                let links = rounded(problem, links, self.settings.round_length);
-                candidates.push((format!("{name}, rounded"), links, limits.clone(), true));
-            }
-        }
-        let finish = |(name, links, limits, is_round): (String, Links, _, bool)| {
-            self.finalist(problem, name, &links, limits, is_round)
-        };
-        // One after the other: each has an atlas of its own, which fills the cores.
-        let mut finalists: Vec<Finalist> = candidates.into_iter().filter_map(finish).collect();
-        finalists.sort_by(|a, b| b.score.total_cmp(&a.score));
-        self.evaluations += finalists.len() as u64;
-        self.finalists = finalists;
+        self.finalists = finalists(problem, &self.settings, self.seed, &self.ends);
+        self.evaluations += self.finalists.len() as u64;
         self.phase = Phase::Done;
-    }
-
-    fn finalist(
-        &self,
-        problem: &DesignProblem,
-        name: String,
-        links: &Links,
-        limits: Vec<ArtificialLimits>,
-        is_round: bool,
-    ) -> Option<Finalist> {
-        let look = Look {
-            samples: self.settings.fit_samples,
-            seed: sample_seed(self.seed, Purpose::Fit, 0),
-            replicates: 1,
-        };
-        let mut draft = problem.draft(links, &limits, look, Care::Last)?;
-        if is_round && self.settings.round_limit > 0.0 {
-            let step = self.settings.round_limit;
-            draft.limits = problem.rounded_limits(links, &draft.limits, step, look)?;
-        }
-        let look = Look {
-            samples: self.settings.selection_samples,
-            seed: sample_seed(self.seed, Purpose::Selection, 0),
-            replicates: REPLICATES,
-        };
-        let held_out = problem.measured(links, &draft.limits, look)?.measures;
-        Some(Finalist {
-            name,
-            score: problem.score(&held_out),
-            error: held_out.merit(problem.merit).error,
-            draft,
-            held_out,
-            is_round,
-        })
     }
 }
 
@@ -439,22 +377,4 @@ fn right_angles(problem: &DesignProblem, links: &Links) -> Option<Links> {
     }
     problem.links.settle(&mut round);
     Some(round)
-}
-
-/// `links` with lengths that are multiples of `step`, and twists of whole degrees. The reach is no
-/// longer 1 to the last digit.
-fn rounded(problem: &DesignProblem, links: &Links, step: f64) -> Links {
-    let mut round = links.clone();
-    for (row, link) in round.iter_mut().enumerate() {
-        for column in [Column::Length, Column::Offset] {
-            let value = link.get_mut(column);
-            *value = (*value / step).round() * step;
-        }
-        link.twist = link.twist.to_degrees().round().to_radians();
-        debug_assert!(row < problem.links.joints());
-    }
-    let wanted = round.clone();
-    problem.links.confine(&mut round);
-    debug_assert_eq!(wanted.len(), round.len());
-    round
 }
