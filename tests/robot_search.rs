@@ -5,7 +5,7 @@ use faultspace::design::{Convention, Geometry, Joint, JointKind, Link, Robot, Ta
 use faultspace::design::{parse_design, read_design};
 use faultspace::diagnostic::Source;
 use faultspace::manifold::{Completeness, PreImageSearch, SearchSettings};
-use faultspace::study::{Progress, RunError, RunOptions, Study, run};
+use faultspace::study::{Progress, Question, RobotSearch, RunError, RunOptions, Study, run};
 use faultspace::synthesis::{
     Arm, Bounds, Care, Column, DesignProblem, LinkRow, LinkSpace, Look, Merit, Parameter,
     ParetoSearch, ParetoSettings, Purpose, Synthesis, SynthesisSettings, sample_seed,
@@ -433,4 +433,21 @@ fn limits_are_fitted_to_the_samples_given() {
     for limit in again.limits.joints() {
         assert!(limit.width() >= 20f64.to_radians() - 1e-9);
     }
+}
+
+/// The genetic algorithm instead: links and limits together.
+#[test]
+fn robots_can_be_bred() {
+    let mut study = Study::load(&shipped("design_quick")).unwrap();
+    study.report.figures = false;
+    let Question::Synthesis(question) = &mut study.question else {
+        panic!("a search for robots");
+    };
+    question.search.method = RobotSearch::Genetic;
+    let folder = tempfile::tempdir().unwrap();
+    let result = run(&study, &options(folder.path(), 2), Arc::new(Silent)).unwrap();
+    let share = value(&result["merits"]["share"]["value"]);
+    let design = value(&result["reference"]["merits"]["share"]["value"]);
+    assert!(share > design, "{share} against {design}");
+    assert!(result["finalists"].as_array().unwrap().len() == 2);
 }

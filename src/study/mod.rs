@@ -82,4 +82,6 @@ pub use surrogate_settings::{
     SurrogateSettings, Train, Training, Validate,
 };
 pub use synthesis_check::SynthesisQuestion;
-pub use synthesis_settings::{Effort, Family, ParameterRange, RowRange, SynthesisStudy};
+pub use synthesis_settings::{
+    Effort, Family, ParameterRange, RobotSearch, RowRange, SynthesisStudy,
+};

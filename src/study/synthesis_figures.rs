@@ -41,7 +41,9 @@ impl SynthesisFinding<'_> {
                 figures.push(Box::new(self.pair(winner, reference)));
                 figures.push(Box::new(self.workspaces(winner, reference)));
             }
-            figures.push(Box::new(self.history(search, winner)));
+            if !search.history().is_empty() {
+                figures.push(Box::new(self.history(search, winner)));
+            }
             if !winner.sensitivity.is_empty() {
                 figures.push(Box::new(self.sensitivity(winner)));
             }

@@ -5,6 +5,7 @@ use super::run::{Ready, RunError, RunOptions};
 use super::settings::Study;
 use super::synthesis_check::SynthesisQuestion;
 use super::synthesis_result::{Reference, SynthesisFinding, Winner};
+use super::synthesis_settings::RobotSearch;
 use crate::synthesis::{
     Arm, Care, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
     REPLICATES, Synthesis, Tolerances, sample_seed,
@@ -92,12 +93,16 @@ impl Run<'_> {
 
     /// Searches one robot.
     fn one(&self, saved: Option<Stage>, starts: Vec<Links>) -> Result<Value, RunError> {
+        let settings = self.question.search.search_settings();
+        let genetic = self.question.search.method == RobotSearch::Genetic;
         let mut search = match saved {
             Some(Stage::Synthesis(search)) => *search,
-            _ => {
-                let settings = self.question.search.search_settings();
-                Synthesis::new(settings, self.study.seed, starts)
+            saved if genetic => {
+                let bred = self.breed(saved, starts)?;
+                let leaders = bred.leaders(settings.runs as usize);
+                Synthesis::of_drafts(settings, self.study.seed, &leaders, bred.evaluations())
             }
+            _ => Synthesis::new(settings, self.study.seed, starts),
         };
         let store = &self.ready.session.store;
         while !search.is_done() {
@@ -136,8 +141,8 @@ impl Run<'_> {
         finding.write(self.options, &self.ready.study_toml)
     }
 
-    /// Searches a front.
-    fn front(&self, saved: Option<Stage>, starts: Vec<Links>) -> Result<Value, RunError> {
+    /// Runs the genetic algorithm to its end.
+    fn breed(&self, saved: Option<Stage>, starts: Vec<Links>) -> Result<ParetoSearch, RunError> {
         let asked = &self.question.search;
         let mut search = match saved {
             Some(Stage::Pareto(search)) => *search,
@@ -159,6 +164,13 @@ impl Run<'_> {
             store.save_if_due(|| Stage::Pareto(Box::new(search.clone())))?;
         }
         store.save(Stage::Pareto(Box::new(search.clone())))?;
+        Ok(search)
+    }
+
+    /// Searches a front.
+    fn front(&self, saved: Option<Stage>, starts: Vec<Links>) -> Result<Value, RunError> {
+        let search = self.breed(saved, starts)?;
+        let store = &self.ready.session.store;
         let searched = store.seconds();
         let reference = self.reference()?;
         let finding = SynthesisFinding {

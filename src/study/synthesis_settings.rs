@@ -21,6 +21,16 @@ pub enum Family {
     Design,
 }
 
+/// How one robot is searched; a front always by the genetic algorithm NSGA-II.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RobotSearch {
+    /// CMA-ES over links with limits refitted inside.
+    CmaEs,
+    /// A genetic algorithm over links and limits together.
+    Genetic,
+}
+
 /// What is known of a parameter beforehand: degrees or metres.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 #[serde(untagged)]
@@ -85,6 +95,8 @@ pub struct Effort {
 pub struct SynthesisStudy {
     /// What is made as large as possible: one merit for one robot, several for a front.
     pub objectives: Vec<Merit>,
+    /// How one robot is searched.
+    pub method: RobotSearch,
     /// Which robots are searched.
     pub family: Family,
     /// Reach of the robots, metres: the largest distance of the wrist (for positions, of the

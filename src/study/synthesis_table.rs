@@ -1,7 +1,9 @@
 //! The table `[synthesis]`: read as written, then filled in beside the robot.
 
 use super::file::{MAX_DEGREES, MAX_LENGTH};
-use super::synthesis_settings::{Effort, Family, ParameterRange, RowRange, SLICES, SynthesisStudy};
+use super::synthesis_settings::{
+    Effort, Family, ParameterRange, RobotSearch, RowRange, SLICES, SynthesisStudy,
+};
 use crate::design::TaskSpace;
 use crate::diagnostic::{Entry, Item, Place, Problems, Table};
 use crate::synthesis::{Column, LinkSpace, Merit};
@@ -11,6 +13,7 @@ use crate::synthesis::{Column, LinkSpace, Merit};
 pub(super) struct SynthesisTable {
     pub objectives: Option<Item<Vec<Item<Merit>>>>,
     pub joints: Option<Item<u64>>,
+    method: Option<Item<RobotSearch>>,
     family: Option<Item<Family>>,
     reach: Option<f64>,
     include_design: Option<Item<bool>>,
@@ -38,6 +41,7 @@ pub(super) struct RowTable {
 const KEYS: &[&str] = &[
     "objectives",
     "joints",
+    "method",
     "family",
     "reach",
     "include_design",
@@ -100,6 +104,13 @@ pub(super) fn read(root: &Table) -> Option<Item<SynthesisTable>> {
     let value = SynthesisTable {
         objectives: read_objectives(&table),
         joints: table.integer("joints", 3..=32),
+        method: table.choice(
+            "method",
+            &[
+                ("cma-es", RobotSearch::CmaEs),
+                ("genetic", RobotSearch::Genetic),
+            ],
+        ),
         family: table.choice(
             "family",
             &[
@@ -257,6 +268,10 @@ pub(super) fn settings(
         .map_or(joints, |item| item.value as usize);
     SynthesisStudy {
         objectives: objectives(table, problems),
+        method: table
+            .method
+            .as_ref()
+            .map_or(RobotSearch::CmaEs, |m| m.value),
         family,
         reach,
         include_design: table.include_design.as_ref().is_some_and(|item| item.value)
@@ -379,6 +394,7 @@ impl Default for SynthesisTable {
         SynthesisTable {
             objectives: None,
             joints: None,
+            method: None,
             family: None,
             reach: None,
             include_design: None,

@@ -139,6 +139,15 @@ impl ParetoSearch {
         front
     }
 
+    /// The best of the population by the first merit on held-out samples, at most `count`.
+    pub fn leaders(&self, count: usize) -> Vec<Draft> {
+        let first = |robot: &FrontRobot| merit_values(&robot.held_out, &self.merits)[0];
+        let mut robots: Vec<&FrontRobot> = self.front.iter().collect();
+        robots.sort_by(|a, b| first(b).total_cmp(&first(a)));
+        let leaders = robots.into_iter().take(count);
+        leaders.map(|robot| robot.draft.clone()).collect()
+    }
+
     /// Merits of everything measured in the search.
     pub fn seen(&self) -> &[Vec<f64>] {
         &self.seen

@@ -116,6 +116,27 @@ impl Synthesis {
         }
     }
 
+    /// The end of a search of another kind: `drafts` are its best robots, from which the winner is
+    /// still to be chosen.
+    pub fn of_drafts(
+        settings: SynthesisSettings,
+        seed: u64,
+        drafts: &[Draft],
+        evaluations: u64,
+    ) -> Synthesis {
+        let end = |(number, draft): (usize, &Draft)| End {
+            name: format!("candidate {number}"),
+            links: draft.links.clone(),
+            limits: vec![draft.limits.clone()],
+        };
+        Synthesis {
+            phase: Phase::Choosing,
+            ends: (1..).zip(drafts).map(end).collect(),
+            evaluations,
+            ..Synthesis::new(settings, seed, Vec::new())
+        }
+    }
+
     /// Whether there is nothing left to do.
     pub fn is_done(&self) -> bool {
         self.phase == Phase::Done
