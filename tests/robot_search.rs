@@ -273,7 +273,7 @@ fn robots_of_singular_structure_do_not_hang() {
             .random(&mut faultspace::sampling::stream(seed, 0));
         for (row, link) in links.iter_mut().enumerate() {
             // Many zeros on top of those drawn.
-            if (number as usize + row) % 2 == 0 {
+            if (number as usize + row).is_multiple_of(2) {
                 *link.get_mut(Column::Offset) = 0.0;
             }
         }
@@ -427,7 +427,12 @@ fn limits_are_fitted_to_the_samples_given() {
     let fitted = problem.draft(&links, &[], look(1), Care::Scratch).unwrap();
     let elsewhere = problem.measured(&links, &fitted.limits, look(2)).unwrap();
     let again = problem
-        .draft(&links, &[fitted.limits.clone()], look(2), Care::Last)
+        .draft(
+            &links,
+            std::slice::from_ref(&fitted.limits),
+            look(2),
+            Care::Last,
+        )
         .unwrap();
     assert!(again.measures.share.value >= elsewhere.measures.share.value);
     for limit in again.limits.joints() {

@@ -212,7 +212,7 @@ impl ParetoSearch {
 
     fn breed(&mut self, problem: &DesignProblem) {
         let look = self.look();
-        if self.generation % RENEWED == 0 {
+        if self.generation.is_multiple_of(RENEWED) {
             let again = |draft: &Draft| problem.measured(&draft.links, &draft.limits, look);
             let renewed: Vec<Draft> = self.population.par_iter().filter_map(again).collect();
             self.evaluations += self.population.len() as u64;
