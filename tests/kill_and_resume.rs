@@ -178,7 +178,11 @@ fn kill_often_and_compare(threads: &str, seed: u64, expected: &Value, place: &Pl
     while kills < KILLS {
         let more: &[&str] = if kills == 0 { &[] } else { &["--resume"] };
         let mut child = place.command(&out, threads, more).spawn().unwrap();
-        // A checkpoint is due after 200 ms: some of these runs get that far, some do not.
+        // A checkpoint is due after 200 ms: some of these runs get that far, some do not. On a busy
+        // machine none might, so every third waits for one.
+        if kills % 3 == 2 {
+            wait_for(&mut child, &place.checkpoint(&out));
+        }
         sleep(Duration::from_millis(moments.random_range(20..330)));
         child.kill().unwrap(); // SIGKILL
         if child.wait().unwrap().success() {
