@@ -117,7 +117,7 @@ pub use pareto_figure::{ParetoFigure, ParetoPoint};
 pub use points::{write_curves, write_points};
 pub use predicted_workspaces::{PredictedWorkspaces, WorkspaceCase};
 pub use projections_figure::ProjectionsFigure;
-pub use result_files::{write_bytes, write_json, write_text};
+pub use result_files::{is_unfinished, remove_unfinished, write_bytes, write_json, write_text};
 pub use robot_3d::{JointMark, SpatialRobotFigure};
 pub use robot_figure::RobotFigure;
 pub use robot_pair_figure::{PairedRobot, RobotPairFigure};

@@ -35,10 +35,28 @@ pub fn write_json(path: &Path, value: &serde_json::Value) -> Result<(), ReportEr
     write_text(path, &text)
 }
 
+/// How the names of temporary files begin and end.
+const TEMPORARY: [&str; 2] = [".faultspace-", ".tmp"];
+
+/// Whether `name` is that of a temporary file: a run that is killed while it writes leaves one.
+pub fn is_unfinished(name: &std::ffi::OsStr) -> bool {
+    let name = name.to_string_lossy();
+    name.starts_with(TEMPORARY[0]) && name.ends_with(TEMPORARY[1])
+}
+
+/// Removes what a killed run left half-written in `folder`. What cannot be removed does no harm.
+pub fn remove_unfinished(folder: &Path) {
+    for entry in std::fs::read_dir(folder).into_iter().flatten().flatten() {
+        if is_unfinished(&entry.file_name()) {
+            let _ = std::fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// A temporary file with the permissions of an ordinary one (tempfile's default is private).
 fn temporary(directory: &Path) -> std::io::Result<tempfile::NamedTempFile> {
     let mut builder = tempfile::Builder::new();
-    builder.prefix(".faultspace-").suffix(".tmp");
+    builder.prefix(TEMPORARY[0]).suffix(TEMPORARY[1]);
     #[cfg(unix)]
     {
         use std::os::unix::fs::PermissionsExt;

@@ -2,6 +2,7 @@
 
 use super::run::RunOptions;
 use crate::diagnostic::{InputError, Problem};
+use crate::report::is_unfinished;
 use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
@@ -55,9 +56,14 @@ fn check_content(options: &RunOptions) -> Result<(), InputError> {
     Err(error(out, "the report folder already exists", found, help))
 }
 
+/// Whether there is anything but what a killed run left half-written.
 fn has_entries(folder: &Path) -> io::Result<bool> {
+    let counts = |entry: &io::Result<fs::DirEntry>| match entry {
+        Ok(entry) => !is_unfinished(&entry.file_name()),
+        Err(_) => true,
+    };
     match fs::read_dir(folder) {
-        Ok(mut entries) => Ok(entries.next().is_some()),
+        Ok(entries) => Ok(entries.into_iter().any(|entry| counts(&entry))),
         Err(cause) if cause.kind() == io::ErrorKind::NotFound => Ok(false),
         Err(cause) => Err(cause),
     }
@@ -116,6 +122,16 @@ mod tests {
         check_folder(&options(dir.path().join("a/b"))).unwrap();
         check_folder(&options(dir.path().to_owned())).unwrap();
         assert!(!has_entries(dir.path()).unwrap());
+    }
+
+    /// A run that is killed before its first file is whole must not stand in the way of the next.
+    #[test]
+    fn half_written_files_do_not_count() {
+        let dir = tempfile::tempdir().unwrap();
+        fs::write(dir.path().join(".faultspace-x1.tmp"), "half").unwrap();
+        check_folder(&options(dir.path().to_owned())).unwrap();
+        crate::report::remove_unfinished(dir.path());
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
     }
 
     #[test]

@@ -62,6 +62,7 @@ pub fn run(
     progress: Arc<dyn Progress>,
 ) -> Result<Value, RunError> {
     check_folder(options)?;
+    report::remove_unfinished(&options.out);
     pool(options)?.install(|| run_in_pool(study, options, progress))
 }
 
