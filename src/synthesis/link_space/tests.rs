@@ -36,7 +36,7 @@ fn coordinates_survive_the_round_trip() {
     let space = family(Parameter::Bounded([-TAU, TAU]), 4);
     let links = space.random(&mut stream(2, 0));
     let variables = space.variables(true);
-    // Seven of twelve are searched: d1, the last row and nothing else are idle.
+    // Of twelve, d₁ and the last row are idle; three of the eight left are twists.
     assert_eq!(variables.len(), 8);
     assert_eq!(space.variables(false).len(), 5);
     let x = space.coordinates(&links, &variables);
@@ -61,8 +61,7 @@ fn settling_divides_by_the_reach() {
     assert!((reach - 1.0).abs() < 1e-3 && scale > 0.9 && scale < 1.2);
 }
 
-/// What the doc comment of `idle` claims, measured: turning and shifting what comes before joint 1
-/// or after the last joint changes no reach beyond itself, and the robot file keeps its twists.
+/// A robot of links has their rows, at the reach that was asked for.
 #[test]
 fn robots_have_standard_rows() {
     let space = right_angles();
