@@ -32,6 +32,7 @@ fn main() {
         screening_samples: 200,
         runs: 1,
         trial_generations: 5,
+        full_runs: 1,
         generations: 5,
         population: 8,
         samples: 300,

@@ -11,7 +11,7 @@ use faultspace::synthesis::{
     ParetoSearch, ParetoSettings, Purpose, Synthesis, SynthesisSettings, sample_seed,
 };
 use faultspace::workspace::hybrid::AtlasSettings;
-use faultspace::workspace::{ArtificialLimits, FailureSet};
+use faultspace::workspace::{ArtificialLimits, FailureSet, JointLimit};
 use nalgebra::Isometry3;
 use serde_json::Value;
 use std::f64::consts::{FRAC_PI_2, PI};
@@ -374,6 +374,7 @@ fn a_search_resumes_bit_for_bit() {
         screening_samples: 100,
         runs: 2,
         trial_generations: 2,
+        full_runs: 1,
         generations: 2,
         population: 4,
         samples: 100,
@@ -403,6 +404,92 @@ fn a_search_resumes_bit_for_bit() {
             let steps = link.length / 0.01;
             assert!((steps - steps.round()).abs() < 1e-9);
         }
+    }
+}
+
+/// After every heat the better half of the runs goes on; those that are left go through the first
+/// stage, the better half of them through the next.
+#[test]
+fn the_better_half_of_the_runs_goes_on() {
+    let problem = problem(7, &[-FRAC_PI_2, FRAC_PI_2], 0.5);
+    let settings = SynthesisSettings {
+        screened: 16,
+        screening_samples: 100,
+        runs: 6,
+        trial_generations: 1,
+        full_runs: 3,
+        generations: 2,
+        population: 4,
+        samples: 100,
+        patience: 10,
+        fit_samples: 100,
+        selection_samples: 1024,
+        round_length: 0.0,
+        round_limit: 0.0,
+    };
+    let mut search = Synthesis::new(settings, 2, Vec::new());
+    let mut progress = vec![search.progress().0];
+    while !search.is_done() {
+        search.advance(&problem);
+        progress.push(search.progress().0);
+    }
+    assert!(progress.is_sorted(), "{progress:?}");
+    assert_eq!((progress[0], progress.last()), (0.0, Some(&1.0)));
+    let generations = |run: u32| search.history().iter().filter(|g| g.run == run).count();
+    // One heat, then two generations more for three of the six.
+    let mut lengths: Vec<usize> = (0..6).map(generations).collect();
+    lengths.sort();
+    assert_eq!(lengths, [1, 1, 1, 3, 3, 3]);
+    let refined: Vec<u32> = (100..106).filter(|&run| generations(run) > 0).collect();
+    assert_eq!(refined.len(), 2);
+    assert!(refined.iter().all(|&run| generations(run - 100) == 3));
+    // Of the runs that ended, those that went on had the better medians.
+    let last = |run: u32| {
+        let of_run = search.history().iter().filter(|g| g.run == run);
+        let medians: Vec<f64> = of_run.map(|g| g.quartiles[1]).collect();
+        medians.iter().sum::<f64>() / medians.len() as f64
+    };
+    let ended: Vec<u32> = (0..6).filter(|&run| generations(run) == 3).collect();
+    let dropped = ended.iter().find(|&&run| !refined.contains(&(run + 100)));
+    for run in &refined {
+        assert!(last(run - 100) >= last(*dropped.unwrap()));
+    }
+    assert_eq!(search.finalists().len(), 5);
+    let mut names: Vec<&str> = search.finalists().iter().map(|f| &f.name[..]).collect();
+    names.sort();
+    names.dedup();
+    assert_eq!(names.len(), 5);
+}
+
+/// A row with -a and -α is the same link, with both joints at its ends turned by half a turn:
+/// R_z(θ) T_z(d) T_x(a) R_x(α) R_z(π) = R_z(θ + π) T_z(d) T_x(-a) R_x(-α).
+#[test]
+fn links_with_negative_lengths_are_the_same_links() {
+    let problem = problem(7, &[-FRAC_PI_2, FRAC_PI_2], 0.5);
+    let mut rng = faultspace::sampling::stream(11, 0);
+    let links = problem.links.random(&mut rng);
+    let look = Look {
+        samples: 2000,
+        seed: 3,
+        replicates: 1,
+    };
+    let fitted = problem.draft(&links, &[], look, Care::Scratch).unwrap();
+    assert!(fitted.measures.share.value > 0.0);
+    for row in 0..6 {
+        let mut turned = links.clone();
+        turned[row].length *= -1.0;
+        turned[row].twist *= -1.0;
+        let mut limits = fitted.limits.joints().to_vec();
+        for limit in &mut limits[row..row + 2] {
+            *limit = JointLimit::new(limit.lower + PI, limit.upper + PI);
+        }
+        // Pairs of joints are turned; the search spaces of both robots hold joint 1's limits
+        // symmetric, which measuring does not need.
+        let limits = ArtificialLimits::new(limits);
+        let same = problem.measured(&turned, &limits, look).unwrap().measures;
+        let [a, b] = [&fitted.measures, &same].map(|m| (m.share.value, m.fill.value));
+        assert!((a.0 - b.0).abs() < 2e-3 * a.0, "row {row}: {a:?} {b:?}");
+        assert!((a.1 - b.1).abs() < 1e-3 * a.1, "row {row}: {a:?} {b:?}");
     }
 }
 

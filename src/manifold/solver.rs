@@ -50,6 +50,18 @@ impl Default for SearchSettings {
 }
 
 impl SearchSettings {
+    /// For scores that are compared while searching, with half the starts of
+    /// [`SearchSettings::coarse`]: one manifold in a hundred is missed.
+    pub fn sparse() -> SearchSettings {
+        SearchSettings {
+            least_seeds: 16,
+            seeds_per_manifold: 4,
+            least_hits: 2,
+            unreachable_after: 24,
+            ..SearchSettings::coarse()
+        }
+    }
+
     /// For many task points at once: at least 99.5 % of them complete.
     pub fn coarse() -> SearchSettings {
         SearchSettings {

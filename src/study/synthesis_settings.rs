@@ -68,9 +68,11 @@ pub struct Effort {
     pub screening_samples: u64,
     /// Robots from which the search goes on.
     pub runs: u64,
-    /// Generations after which the best of these goes on alone.
+    /// Generations after which the better half of these goes on, until `full_runs` are left.
     pub trial_generations: u64,
-    /// Most generations of each stage; of a search for a front, all generations.
+    /// Runs that go on to their end.
+    pub full_runs: u64,
+    /// Most generations of each stage after the trials; of a search for a front, all generations.
     pub generations: u64,
     /// Robots per generation.
     pub population: u64,
@@ -137,6 +139,7 @@ impl Effort {
         screening_samples: 300,
         runs: 1,
         trial_generations: 3,
+        full_runs: 1,
         generations: 3,
         population: 8,
         samples: 300,
@@ -151,8 +154,9 @@ impl Effort {
     pub const USUAL: Effort = Effort {
         screened: 300,
         screening_samples: 600,
-        runs: 3,
-        trial_generations: 20,
+        runs: 6,
+        trial_generations: 10,
+        full_runs: 1,
         generations: 60,
         population: 12,
         samples: 800,
@@ -163,16 +167,17 @@ impl Effort {
         check_poses: 1000,
         sensitivity_samples: 8000,
     };
-    /// Half an hour and more.
+    /// Half an hour, with twice as many starts: two of them are followed to their end.
     pub const THOROUGH: Effort = Effort {
         screened: 600,
         screening_samples: 600,
-        runs: 4,
-        trial_generations: 30,
-        generations: 150,
+        runs: 12,
+        trial_generations: 10,
+        full_runs: 2,
+        generations: 60,
         population: 16,
-        samples: 1500,
-        patience: 30,
+        samples: 800,
+        patience: 25,
         fit_samples: 30_000,
         selection_samples: 50_000,
         report_samples: 200_000,
@@ -240,6 +245,7 @@ impl SynthesisStudy {
             screening_samples: effort.screening_samples as u32,
             runs: effort.runs as u32,
             trial_generations: effort.trial_generations as u32,
+            full_runs: effort.full_runs as u32,
             generations: effort.generations as u32,
             population: effort.population as u32,
             samples: effort.samples as u32,

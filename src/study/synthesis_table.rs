@@ -59,6 +59,7 @@ const KEYS: &[&str] = &[
     "screening_samples",
     "runs",
     "trial_generations",
+    "full_runs",
     "generations",
     "population",
     "samples",
@@ -169,6 +170,7 @@ fn read_effort(table: &Table) -> Effort {
     );
     set("runs", 1..=100, &mut effort.runs);
     set("trial_generations", 1..=MOST, &mut effort.trial_generations);
+    set("full_runs", 1..=99, &mut effort.full_runs);
     set("generations", 1..=MOST, &mut effort.generations);
     set("population", 4..=10_000, &mut effort.population);
     set("samples", samples.clone(), &mut effort.samples);
@@ -326,7 +328,9 @@ fn rows(
             },
         },
         a: ParameterRange::Between {
-            min: 0.0,
+            // Both signs: a row with -a and -alpha is the same link, so that a search may pass
+            // through a = 0, where axes meet, to what would be another twist.
+            min: -LONGEST * reach,
             max: LONGEST * reach,
         },
         d: ParameterRange::Between {

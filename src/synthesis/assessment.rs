@@ -4,6 +4,7 @@ use super::arm::Arm;
 use super::link_space::{LinkSpace, Links};
 use super::measures::{Measures, Merit};
 use crate::design::TaskSpace;
+use crate::manifold::SearchSettings;
 use crate::objective::{DesignSpace, HybridObjective};
 use crate::optimiser::{Candidate, Reach, climb};
 use crate::sampling::stream;
@@ -112,6 +113,16 @@ impl DesignProblem {
     /// The atlas of `arm`; `None` if there is nothing to trace. For more than one degree of
     /// redundancy it is more accurate if it is for `limits` alone.
     pub fn atlas(&self, arm: &Arm, look: Look, limits: Option<&ArtificialLimits>) -> Option<Atlas> {
+        self.atlas_with(self.atlas, arm, look, limits)
+    }
+
+    fn atlas_with(
+        &self,
+        settings: AtlasSettings,
+        arm: &Arm,
+        look: Look,
+        limits: Option<&ArtificialLimits>,
+    ) -> Option<Atlas> {
         let (task, extent) = (self.task(), &arm.extent);
         let margin = MARGIN * extent.reach;
         let plan = SamplePlan {
@@ -128,7 +139,7 @@ impl DesignProblem {
             },
             seed: look.seed,
         };
-        let recipe = AtlasRecipe::new(&arm.robot, plan, self.atlas).ok()?;
+        let recipe = AtlasRecipe::new(&arm.robot, plan, settings).ok()?;
         let recipe = match limits {
             Some(limits) if arm.robot.degree_of_redundancy(task) > 1 => recipe.focused(limits),
             _ => recipe,
@@ -151,7 +162,15 @@ impl DesignProblem {
         care: Care,
     ) -> Option<Draft> {
         let arm = Arm::of_links(&self.links, links)?;
-        let atlas = self.atlas(&arm, look, None)?;
+        // The noise of so few samples is far above what a manifold missed now and then takes away.
+        let settings = match care {
+            Care::Last => self.atlas,
+            Care::Refit | Care::Scratch => AtlasSettings {
+                search: SearchSettings::sparse(),
+                ..self.atlas
+            },
+        };
+        let atlas = self.atlas_with(settings, &arm, look, None)?;
         let limits = self.fit(&arm, &atlas, starts, care, look.seed);
         Some(self.draft_of(links, &arm, &atlas, limits))
     }

@@ -40,33 +40,32 @@ pub struct Finalist {
     pub is_round: bool,
 }
 
-/// Fits limits to the end of every stage and to its rounded robot, and compares them: best first.
-pub(super) fn finalists(
+/// Fits limits to the end of a stage and to its rounded robot, and measures both.
+pub(super) fn with_finalists(
     problem: &DesignProblem,
     settings: &SynthesisSettings,
     seed: u64,
-    ends: &[End],
+    end: &End,
 ) -> Vec<Finalist> {
-    let mut finalists = Vec::new();
-    for end in ends {
-        let maker = Maker {
-            problem,
-            settings,
-            seed,
-        };
-        // One after the other: each has an atlas of its own, which fills the cores.
-        finalists.extend(maker.finalist(end.clone(), false));
-        if settings.round_length > 0.0 {
-            let round = End {
-                name: format!("{}, rounded", end.name),
-                links: rounded(problem, &end.links, settings.round_length),
-                limits: end.limits.clone(),
-            };
-            finalists.extend(maker.finalist(round, true));
-        }
-    }
+    let maker = Maker {
+        problem,
+        settings,
+        seed,
+    };
+    // One after the other: each has an atlas of its own, which fills the cores.
+    let plain = maker.finalist(end.clone(), false);
+    let rounded = (settings.round_length > 0.0).then(|| End {
+        name: format!("{}, rounded", end.name),
+        links: rounded(problem, &end.links, settings.round_length),
+        limits: end.limits.clone(),
+    });
+    let rounded = rounded.and_then(|end| maker.finalist(end, true));
+    plain.into_iter().chain(rounded).collect()
+}
+
+/// Best first, on the samples of the selection.
+pub(super) fn sort_finalists(finalists: &mut [Finalist]) {
     finalists.sort_by(|a, b| b.score.total_cmp(&a.score));
-    finalists
 }
 
 struct Maker<'a> {

@@ -17,6 +17,7 @@ mod run;
 mod search;
 mod seeds;
 mod sensitivity;
+mod stages;
 
 pub use arm::Arm;
 pub use assessment::{Bounds, Care, DesignProblem, Draft, Look};

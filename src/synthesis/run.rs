@@ -78,24 +78,25 @@ const INHERITED: usize = 2;
 const AVERAGED: usize = 5;
 
 impl Run {
-    /// A run that starts at `draft`.
-    pub fn new(
+    /// A run that starts at `links`, with `limits` that are good for them.
+    pub(super) fn from_links(
         problem: &DesignProblem,
-        draft: &Draft,
+        links: Links,
+        limits: Vec<ArtificialLimits>,
         stage: Stage,
         settings: RunSettings,
         number: u32,
     ) -> Run {
         let variables = problem.links.variables(stage == Stage::All);
-        let x = problem.links.coordinates(&draft.links, &variables);
+        let x = problem.links.coordinates(&links, &variables);
         Run {
             number,
             stage,
             settings,
             search: CmaEs::new(x, settings.step, settings.population as usize),
             variables,
-            links: draft.links.clone(),
-            inherited: vec![draft.limits.clone()],
+            links,
+            inherited: limits,
             medians: Vec::new(),
         }
     }

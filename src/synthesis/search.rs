@@ -1,18 +1,18 @@
-//! The search for one robot: screening, runs of CMA-ES, rounding, choice between finalists.
+//! The search for one robot: screening, a race of CMA-ES runs, rounding, choice between finalists.
 //!
 //! It goes in steps of seconds at most; between two of them its state can be saved, and goes on
 //! to the same end.
 
 use super::assessment::{Care, DesignProblem, Draft, Look};
-use super::finalists::{End, Finalist, finalists};
+use super::finalists::{End, Finalist, sort_finalists, with_finalists};
 use super::link_space::Links;
-use super::run::{Generation, Run, RunSettings, Stage};
+use super::run::{Generation, Run, Stage};
 use super::seeds::{Purpose, sample_seed};
+use super::stages::{FIRST, Leg};
 use crate::manifold::Intolerance;
 use crate::sampling::stream;
 use rayon::prelude::*;
 use serde::{Deserialize, Serialize};
-use std::f64::consts::FRAC_PI_2;
 
 /// How long and how carefully is searched.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
@@ -23,9 +23,12 @@ pub struct SynthesisSettings {
     pub screening_samples: u32,
     /// Robots from which runs start.
     pub runs: u32,
-    /// Generations of each run before the best goes on alone.
+    /// Generations after which the better half of the runs goes on, again and again until
+    /// `full_runs` are left.
     pub trial_generations: u32,
-    /// Most generations of the best run in each stage.
+    /// Runs that go on to their end.
+    pub full_runs: u32,
+    /// Most generations of each stage after the trials.
     pub generations: u32,
     /// Robots per generation.
     pub population: u32,
@@ -47,9 +50,19 @@ pub struct SynthesisSettings {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 enum Phase {
     Screening,
-    Trials { current: usize },
-    Running,
-    Choosing,
+    /// Run number `current` of this heat of the trials is on its way.
+    Trials {
+        heat: u32,
+        current: usize,
+    },
+    /// Run number `current` is on its way through the stage that all runs are in.
+    Running {
+        current: usize,
+    },
+    /// The end number `current` is fitted and measured.
+    Choosing {
+        current: usize,
+    },
     Done,
 }
 
@@ -86,16 +99,6 @@ const SECOND_LOOKS: usize = 4;
 /// Task points of a second look, as a multiple of those of the first.
 const SECOND_SAMPLES: u32 = 3;
 
-/// First steps of the stages; larger ones lose the limits that robots inherit.
-const FIRST_STEP: f64 = 0.12;
-const LATER_STEP: f64 = 0.05;
-
-/// Task points of the later stages, which are about smaller differences, as a multiple.
-const LATER_SAMPLES: u32 = 2;
-
-/// Twists this near to a right angle become one, radians: beyond, another robot is meant.
-const NEARLY_RIGHT: f64 = 0.35;
-
 impl Synthesis {
     /// A search for `problem`, from random robots and from `starts`.
     pub fn new(settings: SynthesisSettings, seed: u64, starts: Vec<Links>) -> Synthesis {
@@ -130,7 +133,7 @@ impl Synthesis {
             limits: vec![draft.limits.clone()],
         };
         Synthesis {
-            phase: Phase::Choosing,
+            phase: Phase::Choosing { current: 0 },
             ends: (1..).zip(drafts).map(end).collect(),
             evaluations,
             ..Synthesis::new(settings, seed, Vec::new())
@@ -146,9 +149,9 @@ impl Synthesis {
     pub fn advance(&mut self, problem: &DesignProblem) {
         match self.phase {
             Phase::Screening => self.screen(problem),
-            Phase::Trials { current } => self.try_run(problem, current),
-            Phase::Running => self.run_on(problem),
-            Phase::Choosing => self.choose(problem),
+            Phase::Trials { heat, current } => self.try_run(problem, heat, current),
+            Phase::Running { current } => self.run_on(problem, current),
+            Phase::Choosing { current } => self.choose(problem, current),
             Phase::Done => {}
         }
     }
@@ -195,15 +198,35 @@ impl Synthesis {
         let latest = self.history.last().map(|g| g.quartiles[1]);
         let best_screened = self.screening.iter().copied().fold(0.0, f64::max);
         let s = &self.settings;
-        let all = s.screened / 4
-            + s.runs * s.trial_generations * s.population
-            + 2 * s.generations * s.population;
-        let done = f64::from(self.screened.min(s.screened)) / 4.0
-            + self.history.len() as f64 * f64::from(s.population);
+        let of = |done: f64, all: f64| (done / all.max(1.0)).min(1.0);
+        let trials = s.trial_generations;
+        // Weights from the work of a usual search; runs of a stage mostly end before its last
+        // generation.
         let share = match self.phase {
+            Phase::Screening => 0.1 * of(f64::from(self.screened), f64::from(s.screened)),
+            Phase::Trials { heat, current } => {
+                let run = self.runs[current].generations() as f64 - f64::from(heat * trials);
+                let heat_share = of(
+                    current as f64 + of(run, f64::from(trials)),
+                    self.runs.len() as f64,
+                );
+                // Every heat has half the runs of the one before.
+                0.1 + 0.3 * (1.0 - 0.5f64.powi(heat as i32) * (1.0 - 0.5 * heat_share))
+            }
+            Phase::Running { current } => {
+                let run = &self.runs[current];
+                let before = self.generations_before(run.stage);
+                let done = run.generations().saturating_sub(before) as f64;
+                let own = current as f64 + of(done, f64::from(s.generations));
+                let [from, to] = match run.stage {
+                    Stage::Lengths => [0.4, 0.6],
+                    Stage::Refined | Stage::All => [0.6, 0.85],
+                    Stage::RightAngles => [0.85, 0.9],
+                };
+                from + (to - from) * of(own, self.runs.len() as f64)
+            }
+            Phase::Choosing { current } => 0.9 + 0.1 * of(current as f64, self.ends.len() as f64),
             Phase::Done => 1.0,
-            Phase::Choosing => 0.97,
-            _ => (done / f64::from(all.max(1))).min(0.95),
         };
         (share, latest.unwrap_or(best_screened))
     }
@@ -269,7 +292,7 @@ impl Synthesis {
         self.evaluations += self.drafts.len() as u64;
         self.drafts = self.drafts.par_iter().filter_map(again).collect();
         self.sort_drafts();
-        let settings = self.run_settings(FIRST_STEP, 1);
+        let settings = FIRST.settings(&self.settings);
         let count = self.settings.runs as usize;
         let start = |(number, draft): (u32, &Draft)| {
             Run::new(problem, draft, Stage::Lengths, settings, number)
@@ -277,33 +300,39 @@ impl Synthesis {
         self.runs = (0..).zip(&self.drafts).take(count).map(start).collect();
         self.phase = match self.runs.is_empty() {
             true => Phase::Done,
-            false => Phase::Trials { current: 0 },
+            false => self.next_heat(0),
         };
     }
 
-    fn run_settings(&self, step: f64, times: u32) -> RunSettings {
-        RunSettings {
-            population: self.settings.population,
-            samples: times * self.settings.samples,
-            patience: self.settings.patience,
-            step,
+    /// The next heat, if more runs are left than go on to the end.
+    fn next_heat(&self, heat: u32) -> Phase {
+        match self.runs.len() > self.settings.full_runs.max(1) as usize {
+            true => Phase::Trials { heat, current: 0 },
+            false => Phase::Running { current: 0 },
         }
     }
 
-    fn try_run(&mut self, problem: &DesignProblem, current: usize) {
+    /// One more generation of a run in a heat; after the last run the better half goes on.
+    fn try_run(&mut self, problem: &DesignProblem, heat: u32, current: usize) {
         self.generation(problem, current);
-        if self.runs[current].generations() < u64::from(self.settings.trial_generations) {
+        let until = u64::from((heat + 1) * self.settings.trial_generations);
+        if self.runs[current].generations() < until {
             return;
         }
         if current + 1 < self.runs.len() {
-            self.phase = Phase::Trials {
-                current: current + 1,
-            };
+            let current = current + 1;
+            self.phase = Phase::Trials { heat, current };
             return;
         }
+        let half = self.runs.len() / 2;
+        self.keep_best(half.max(self.settings.full_runs.max(1) as usize));
+        self.phase = self.next_heat(heat + 1);
+    }
+
+    /// Keeps the `count` best runs, best first.
+    fn keep_best(&mut self, count: usize) {
         self.runs.sort_by(|a, b| b.level().total_cmp(&a.level()));
-        self.runs.truncate(1);
-        self.phase = Phase::Running;
+        self.runs.truncate(count);
     }
 
     fn generation(&mut self, problem: &DesignProblem, index: usize) {
@@ -313,63 +342,64 @@ impl Synthesis {
         self.history.push(generation);
     }
 
-    /// One more generation of the best run; at its end the next stage.
-    fn run_on(&mut self, problem: &DesignProblem) {
-        let Some(run) = self.runs.first() else {
-            self.phase = Phase::Choosing;
-            return;
-        };
-        let before = match run.stage {
-            Stage::Lengths => self.settings.trial_generations,
-            Stage::All | Stage::Refined | Stage::RightAngles => 0,
-        };
-        let most = u64::from(self.settings.generations + before);
-        if run.generations() < most && !run.has_settled() {
-            self.generation(problem, 0);
-            return;
+    /// Generations that a run in `stage` has had in the trials.
+    fn generations_before(&self, stage: Stage) -> u64 {
+        let (mut left, mut heats) = (self.settings.runs, 0);
+        while stage == Stage::Lengths && left > self.settings.full_runs.max(1) {
+            left = (left / 2).max(self.settings.full_runs.max(1));
+            heats += 1;
         }
-        let (stage, number) = (run.stage, run.number);
-        let (links, limits) = (run.centre().clone(), run.limits().to_vec());
-        let name = match stage {
-            Stage::Lengths => "lengths",
-            Stage::All => "lengths and twists",
-            Stage::Refined => "refined lengths",
-            Stage::RightAngles => "right angles",
-        };
-        self.ends.push(End {
-            name: name.into(),
-            links: links.clone(),
-            limits: limits.clone(),
-        });
-        let has_twists = problem.links.variables(true).len() > problem.links.variables(false).len();
-        let next = match stage {
-            Stage::Lengths if has_twists => Some((Stage::All, links)),
-            Stage::Lengths => Some((Stage::Refined, links)),
-            Stage::All => {
-                let round = right_angles(problem, &links);
-                round.map(|links| (Stage::RightAngles, links))
-            }
-            Stage::Refined | Stage::RightAngles => None,
-        };
-        match next {
-            Some((stage, links)) => {
-                let draft = Draft {
-                    links,
-                    limits: limits[0].clone(),
-                    ..self.drafts[0].clone()
-                };
-                let settings = self.run_settings(LATER_STEP, LATER_SAMPLES);
-                self.runs = vec![Run::new(problem, &draft, stage, settings, number + 100)];
-            }
-            None => self.phase = Phase::Choosing,
+        u64::from(heats * self.settings.trial_generations)
+    }
+
+    /// One more generation of a run; after the last run has ended, the next stage.
+    fn run_on(&mut self, problem: &DesignProblem, current: usize) {
+        let run = &self.runs[current];
+        let most = u64::from(self.settings.generations) + self.generations_before(run.stage);
+        if run.generations() < most && !run.has_settled() {
+            self.generation(problem, current);
+        } else if current + 1 < self.runs.len() {
+            self.phase = Phase::Running {
+                current: current + 1,
+            };
+        } else {
+            self.next_stage(problem);
         }
     }
 
-    /// Compares the ends of all stages.
-    fn choose(&mut self, problem: &DesignProblem) {
-        self.finalists = finalists(problem, &self.settings, self.seed, &self.ends);
-        self.evaluations += self.finalists.len() as u64;
-        self.phase = Phase::Done;
+    /// Notes where all runs have ended, and starts the next stage from the better half of them.
+    fn next_stage(&mut self, problem: &DesignProblem) {
+        let all = self.runs.len();
+        self.keep_best(all);
+        let many = self.settings.full_runs > 1;
+        self.ends.extend(self.runs.iter().map(|run| run.end(many)));
+        let next = |run: &Run| {
+            let leg = Leg::after(problem, run)?;
+            Some(leg.start(problem, run, &self.settings))
+        };
+        self.runs = self.runs[..all.div_ceil(2)]
+            .iter()
+            .filter_map(next)
+            .collect();
+        self.phase = match self.runs.is_empty() {
+            true => Phase::Choosing { current: 0 },
+            false => Phase::Running { current: 0 },
+        };
+    }
+
+    /// Fits and measures the end of one run; after the last one all are compared.
+    fn choose(&mut self, problem: &DesignProblem, current: usize) {
+        if let Some(end) = self.ends.get(current) {
+            let found = with_finalists(problem, &self.settings, self.seed, end);
+            self.evaluations += found.len() as u64;
+            self.finalists.extend(found);
+            self.phase = Phase::Choosing {
+                current: current + 1,
+            };
+        } else {
+            sort_finalists(&mut self.finalists);
+            self.phase = Phase::Done;
+        }
     }
 }
 
@@ -380,22 +410,4 @@ impl DesignProblem {
         let robot = self.links.robot(links, 1.0, "candidate");
         Intolerance::of(&robot, self.task(), prone)
     }
-}
-
-/// `links` with twists near right angles set to them; `None` if that is no change or a twist is
-/// far from one.
-fn right_angles(problem: &DesignProblem, links: &Links) -> Option<Links> {
-    let mut round = links.clone();
-    for link in &mut round {
-        let nearest = (link.twist / FRAC_PI_2).round() * FRAC_PI_2;
-        if (link.twist - nearest).abs() > NEARLY_RIGHT {
-            return None;
-        }
-        link.twist = nearest;
-    }
-    if round == *links {
-        return None;
-    }
-    problem.links.settle(&mut round);
-    Some(round)
 }
