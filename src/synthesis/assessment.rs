@@ -84,8 +84,11 @@ const BINS: usize = 72;
 /// Steps of the sweeps of a refit while searching, radians.
 const STEPS: [f64; 2] = [0.1, 0.04];
 
-/// Steps of the sweeps of the last fit, after one from wall to wall.
-const LAST_STEPS: [f64; 6] = [0.1, 0.06, 0.04, 0.03, 0.02, 0.01];
+/// Steps of the sweeps of the last fit: of the first ones, from every start, after one from wall to
+/// wall, and of those that the best goes on with.
+const LAST_STEPS: [f64; 2] = [0.1, 0.06];
+/// See [`LAST_STEPS`].
+const FINE_STEPS: [f64; 4] = [0.04, 0.03, 0.02, 0.01];
 
 /// Most sweeps over all ends of rounded limits.
 const ROUNDING_SWEEPS: usize = 4;
@@ -99,6 +102,9 @@ pub enum Care {
     Scratch,
     /// From every given start, with many sweeps: once, for a robot that is to be kept.
     Last,
+    /// From the best of the given starts, with many short sweeps: for a robot that hardly differs
+    /// from one that limits were fitted to.
+    Polish,
 }
 
 /// Power by which falling short of a bound lowers a score.
@@ -164,7 +170,7 @@ impl DesignProblem {
         let arm = Arm::of_links(&self.links, links)?;
         // The noise of so few samples is far above what a manifold missed now and then takes away.
         let settings = match care {
-            Care::Last => self.atlas,
+            Care::Last | Care::Polish => self.atlas,
             Care::Refit | Care::Scratch => AtlasSettings {
                 search: SearchSettings::sparse(),
                 ..self.atlas
@@ -211,7 +217,9 @@ impl DesignProblem {
         let space = self.limit_space(arm);
         let failures = self.failures.clone();
         let objective = HybridObjective::new(space.clone(), atlas, failures, Rule::Definition);
-        let near: Vec<Reach> = STEPS.map(Reach::Near).to_vec();
+        let near =
+            |steps: &[f64]| -> Vec<Reach> { steps.iter().copied().map(Reach::Near).collect() };
+        let with_whole = |steps: &[f64]| [&[Reach::Whole][..], &near(steps)].concat();
         let mut found: Vec<Candidate> = Vec::new();
         let scored = starts.iter().map(|limits| Candidate {
             x: space.point(limits),
@@ -220,24 +228,26 @@ impl DesignProblem {
         let mut starts: Vec<Candidate> = scored.collect();
         starts.sort_by(|a, b| b.score.total_cmp(&a.score));
         let (climbed, sweeps) = match care {
-            Care::Last => {
-                let last = LAST_STEPS.map(Reach::Near);
-                (starts.len(), [&[Reach::Whole][..], &last].concat())
-            }
-            _ => (1, near.clone()),
+            Care::Last => (starts.len(), with_whole(&LAST_STEPS)),
+            Care::Polish => (1, near(&FINE_STEPS)),
+            Care::Refit | Care::Scratch => (1, near(&STEPS)),
         };
         let starts = starts.into_iter().take(climbed);
         found.extend(starts.map(|start| climb(&objective, start.x, &sweeps)));
         if care == Care::Scratch {
             let mut drawn = self.random_limits(arm, atlas, &objective, seed);
             drawn.sort_by(|a, b| b.score.total_cmp(&a.score));
-            let sweeps = [&[Reach::Whole][..], &near].concat();
+            let sweeps = with_whole(&STEPS);
             let starts = drawn.into_iter().take(CLIMBED);
             found.extend(starts.map(|start| climb(&objective, start.x, &sweeps)));
         }
         let best = found
             .into_iter()
             .reduce(|a, b| if b.score > a.score { b } else { a });
+        let best = best.map(|best| match care {
+            Care::Last => climb(&objective, best.x, &near(&FINE_STEPS)),
+            _ => best,
+        });
         match best {
             Some(best) => space.design(&best.x).limits,
             None => ArtificialLimits::free(arm.robot.joints()),

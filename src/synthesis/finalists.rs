@@ -53,13 +53,16 @@ pub(super) fn with_finalists(
         seed,
     };
     // One after the other: each has an atlas of its own, which fills the cores.
-    let plain = maker.finalist(end.clone(), false);
+    let plain = maker.finalist(end.clone(), Care::Last, false);
     let rounded = (settings.round_length > 0.0).then(|| End {
         name: format!("{}, rounded", end.name),
         links: rounded(problem, &end.links, settings.round_length),
-        limits: end.limits.clone(),
+        limits: match &plain {
+            Some(plain) => vec![plain.draft.limits.clone()],
+            None => end.limits.clone(),
+        },
     });
-    let rounded = rounded.and_then(|end| maker.finalist(end, true));
+    let rounded = rounded.and_then(|end| maker.finalist(end, Care::Polish, true));
     plain.into_iter().chain(rounded).collect()
 }
 
@@ -75,14 +78,14 @@ struct Maker<'a> {
 }
 
 impl Maker<'_> {
-    fn finalist(&self, end: End, is_round: bool) -> Option<Finalist> {
+    fn finalist(&self, end: End, care: Care, is_round: bool) -> Option<Finalist> {
         let (problem, settings) = (self.problem, self.settings);
         let look = Look {
             samples: settings.fit_samples,
             seed: sample_seed(self.seed, Purpose::Fit, 0),
             replicates: 1,
         };
-        let mut draft = problem.draft(&end.links, &end.limits, look, Care::Last)?;
+        let mut draft = problem.draft(&end.links, &end.limits, look, care)?;
         if is_round && settings.round_limit > 0.0 {
             let step = settings.round_limit;
             draft.limits = problem.rounded_limits(&end.links, &draft.limits, step, look)?;
