@@ -50,6 +50,8 @@ mod surrogate_settings;
 mod surrogate_table;
 mod synthesis_check;
 mod synthesis_figures;
+mod synthesis_merit;
+mod synthesis_objectives;
 mod synthesis_page;
 mod synthesis_result;
 mod synthesis_run;

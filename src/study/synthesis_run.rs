@@ -59,9 +59,6 @@ fn failures(study: &Study, question: &SynthesisQuestion) -> FailureSet {
     }
 }
 
-/// Task points on which dexterity is measured, at most.
-const DEXTEROUS: u64 = 4000;
-
 /// Margins that are reported, radians.
 fn margins() -> Vec<f64> {
     [0.0, 1.0, 2.0, 5.0, 10.0].map(f64::to_radians).to_vec()
@@ -197,7 +194,7 @@ impl Run<'_> {
     /// The winner measured on samples that nothing was fitted to or chosen by.
     fn winner(&self, draft: &Draft) -> Result<Winner, RunError> {
         self.tell(0.82, draft.score, "measuring the winner on fresh samples");
-        let problem = &self.problem;
+        let problem = &self.problem.with_all_merits();
         let nothing = || anyhow::anyhow!("the winner reaches nothing");
         let robot = problem.links.robot(&draft.links, 1.0, "winner");
         let arm = Arm::of_robot(&robot, self.study.task).ok_or_else(nothing)?;
@@ -208,8 +205,6 @@ impl Run<'_> {
         self.check_interrupt()?;
         let margins = problem.margin_curve(&arm, &atlas, &draft.limits, &margins());
         let counts = atlas.counts();
-        let (robot, failures) = (&arm.robot, &problem.failures);
-        let dexterity = atlas.dexterity(robot, &draft.limits, failures, DEXTEROUS);
         let map = atlas.share_map(&draft.limits, &problem.failures);
         drop(atlas);
         Ok(Winner {
@@ -219,7 +214,6 @@ impl Run<'_> {
             reach: arm.extent.reach,
             measures,
             margins,
-            dexterity,
             check: self.check(&arm, draft)?,
             sensitivity: self.sensitivity(draft)?,
         })
@@ -279,7 +273,7 @@ impl Run<'_> {
         let robot = &study.design.robot;
         let problem = DesignProblem {
             failures: study.failures.clone(),
-            ..problem.clone()
+            ..problem.with_all_merits()
         };
         let prone = |joint| study.failures.contains(joint);
         let verdict = crate::manifold::Intolerance::of(robot, study.task, prone);
