@@ -2,12 +2,13 @@
 
 use super::file::StudyFile;
 use super::serve;
-use super::settings::{DegreeLimits, Design};
+use super::settings::{DegreeLimits, Design, Study};
 use super::synthesis_settings::SynthesisStudy;
 use super::{limits, synthesis_objectives, synthesis_table};
 use crate::diagnostic::{Place, Problems};
 use crate::manifold::MOST_REDUNDANT;
 use crate::synthesis::{Arm, Links};
+use crate::workspace::FailureSet;
 
 /// Settings of `kind = "synthesis"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,17 @@ pub struct SynthesisQuestion {
     pub limits: Option<DegreeLimits>,
     /// The table.
     pub search: SynthesisStudy,
+}
+
+impl SynthesisQuestion {
+    /// F for the robots that are searched, which may have another number of joints than the design.
+    pub(super) fn failures(&self, study: &Study) -> FailureSet {
+        let joints = self.search.links.len();
+        match joints == study.design.robot.joints() {
+            true => study.failures.clone(),
+            false => FailureSet::any(joints).with_margin(study.failures.margin()),
+        }
+    }
 }
 
 /// The validated question; reports to `problems` whatever is wrong.

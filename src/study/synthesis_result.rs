@@ -1,5 +1,6 @@
 //! The result of `kind = "synthesis"`: numbers, files and page.
 
+use super::found_robot;
 use super::report_parts::{formats, provenance_rows};
 use super::result::{SCHEMA, limits_deg, provenance};
 use super::run::{RunError, RunOptions};
@@ -8,7 +9,7 @@ use super::structure;
 use super::synthesis_check::SynthesisQuestion;
 use super::synthesis_merit::{history_json, merit_json, merit_number, merits_json};
 use super::synthesis_page::{tenth, tidy};
-use crate::design::{Robot, robot_to_toml, robot_to_urdf};
+use crate::design::Robot;
 use crate::manifold::Intolerance;
 use crate::report::{FindingReport, write_finding_report};
 use crate::synthesis::{
@@ -99,67 +100,35 @@ impl SynthesisFinding<'_> {
         let asked = &self.question.search;
         let space = asked.link_space(self.study.task);
         let mut robot = space.robot(&tidy(links, asked.reach), asked.reach, &name);
-        robot.source = Some(format!(
-            "found by faultspace {} from the study {}, seed {}",
-            env!("CARGO_PKG_VERSION"),
-            self.study.name,
-            self.study.seed
-        ));
+        robot.source = Some(found_robot::source(self.study));
         robot
     }
 
     /// Robot files, URDF files and a study of the winner, by name.
     fn files(&self) -> Vec<(String, String)> {
         let mut files = Vec::new();
-        let mut add = |folder: &str, links: &Links, limits: &ArtificialLimits, name: String| {
-            let robot = self.named_robot(links, name.clone());
-            let written = DegreeLimits::from_limits(limits, &robot);
-            let comments = [
-                format!(
-                    "Lower limits before a failure (deg): {:.4?}",
-                    written.lower_deg
-                ),
-                format!(
-                    "Upper limits before a failure (deg): {:.4?}",
-                    written.upper_deg
-                ),
-            ];
-            if let Ok(text) = robot_to_toml(&robot, &comments) {
-                files.push((format!("{folder}{name}.toml"), text));
-            }
-            files.push((format!("{folder}{name}.urdf"), robot_to_urdf(&robot)));
+        let named = |draft: &Draft, name: String| {
+            let robot = self.named_robot(&draft.links, name);
+            found_robot::robot_files(&robot, &draft.limits)
         };
         if let Some(winner) = self.winner {
-            let draft = &winner.draft;
-            add("", &draft.links, &draft.limits, "robot".into());
+            files.extend(named(&winner.draft, "robot".into()));
         }
         let front = self.pareto.map(|pareto| pareto.front()).unwrap_or_default();
         for (number, robot) in (1..).zip(front) {
-            let draft = &robot.draft;
-            add(
-                "front/",
-                &draft.links,
-                &draft.limits,
-                format!("robot-{number:02}"),
+            let own = named(&robot.draft, format!("robot-{number:02}"));
+            files.extend(
+                own.into_iter()
+                    .map(|(name, text)| (format!("front/{name}"), text)),
             );
         }
         if let Some(winner) = self.winner {
-            files.push(("robot_study.toml".into(), self.estimate_study(winner)));
+            let (robot, limits) = (self.robot(&winner.draft.links), &winner.draft.limits);
+            let failures = &self.question.failures(self.study);
+            let study = found_robot::robot_study(self.study, &robot, limits, failures, "hybrid");
+            files.push(study);
         }
         files
-    }
-
-    /// A study that measures the winner anew.
-    fn estimate_study(&self, winner: &Winner) -> String {
-        let robot = self.robot(&winner.draft.links);
-        let limits = DegreeLimits::from_limits(&winner.draft.limits, &robot);
-        format!(
-            "# Measures the robot found anew, on other samples.\nkind = \"estimate\"\ndesign = \
-             \"robot.toml\"\nseed = 2\n\n[task]\nspace = \"{}\"\nmargin_deg = \
-             {}\n\n[limits]\nlower_deg = {:?}\nupper_deg = {:?}\n\n[estimator]\nmethod = \
-             \"hybrid\"\n",
-            self.study.task, self.study.margin_deg, limits.lower_deg, limits.upper_deg
-        )
     }
 
     fn to_json(&self) -> Value {

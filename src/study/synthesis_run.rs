@@ -10,7 +10,7 @@ use crate::synthesis::{
     Arm, Care, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
     REPLICATES, Synthesis, Tolerances, sample_seed,
 };
-use crate::workspace::{ArtificialLimits, FailureSet, LockedJointCheck, LockedJointEstimate};
+use crate::workspace::{ArtificialLimits, LockedJointCheck, LockedJointEstimate};
 use serde_json::Value;
 use std::sync::atomic::Ordering;
 
@@ -26,7 +26,7 @@ pub(super) fn run(
 ) -> Result<Value, RunError> {
     ready.begin(options)?;
     let asked = &question.search;
-    let problem = asked.problem(study.task, &failures(study, question));
+    let problem = asked.problem(study.task, &question.failures(study));
     let starts: Vec<Links> = match asked.include_design {
         true => asked
             .links_of(&study.design.robot, study.task)
@@ -48,15 +48,6 @@ pub(super) fn run(
     }?;
     ready.session.store.remove();
     Ok(result)
-}
-
-/// F for the robots that are searched, which may have another number of joints than the design.
-fn failures(study: &Study, question: &SynthesisQuestion) -> FailureSet {
-    let joints = question.search.links.len();
-    match joints == study.design.robot.joints() {
-        true => study.failures.clone(),
-        false => FailureSet::any(joints).with_margin(study.failures.margin()),
-    }
 }
 
 /// Margins that are reported, radians.
