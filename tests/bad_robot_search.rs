@@ -96,3 +96,22 @@ fn links_that_are_too_short() {
     let dir = folder("spatial_4r", "spatial-position", &links);
     assert_eq!(check(&dir).0, Some(0), "{}", check(&dir).1);
 }
+
+/// No length is left to be searched: the robots that the lists allow are screened, and that is all.
+#[test]
+fn nothing_but_lists() {
+    let dir = folder(
+        "spatial_4r",
+        "spatial-position",
+        "links = [{ a = 0.25 }, { a = 0.25, d = 0 }, { a = 0.25, d = 0 }, { a = 0.25, d = 0 }]",
+    );
+    let mut command = Command::cargo_bin("faultspace").unwrap();
+    let command = command.current_dir(dir.path());
+    let output = command
+        .args(["run", "study.toml", "--out", "out"])
+        .output()
+        .unwrap();
+    let message = String::from_utf8(output.stderr).unwrap();
+    assert!(matches!(output.status.code(), Some(0 | 1)), "{message}");
+    assert!(!message.contains("panicked"), "{message}");
+}

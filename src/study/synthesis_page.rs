@@ -5,7 +5,9 @@ use super::synthesis_merit::{merit_label, merit_text};
 use super::synthesis_result::{Reference, SynthesisFinding, Winner, parameter_name};
 use crate::design::{Geometry, Robot};
 use crate::report::{Section, Table, with_error};
-use crate::synthesis::{Column, Links, Measures, Merit, Perturbed, Synthesis, WIDEST_MARGIN};
+use crate::synthesis::{
+    Column, Links, MARGIN_SAMPLES, Measures, Merit, Perturbed, Synthesis, WIDEST_MARGIN,
+};
 use crate::workspace::{ArtificialLimits, Estimate};
 
 fn percent(estimate: &Estimate) -> String {
@@ -14,6 +16,9 @@ fn percent(estimate: &Estimate) -> String {
         with_error(100.0 * estimate.value, 100.0 * estimate.error)
     )
 }
+
+/// Share of robots that miss the reach from which on a reader must know.
+const NOTABLE: f64 = 0.02;
 
 impl SynthesisFinding<'_> {
     /// The answer in sentences.
@@ -114,7 +119,7 @@ impl SynthesisFinding<'_> {
         notes
     }
 
-    /// That robots were left out since their lengths cannot be scaled.
+    /// That robots were left out since their lengths cannot be scaled to the reach.
     fn off_reach_note(&self) -> Option<String> {
         let search = &self.question.search;
         let (missed, of, which) = match self.pareto {
@@ -124,11 +129,10 @@ impl SynthesisFinding<'_> {
                 (missed, search.effort.screened, "random robots")
             }
         };
-        (missed > 0).then(|| {
+        (missed as f64 > NOTABLE * of as f64).then(|| {
             format!(
-                "{missed} of {of} {which} cannot be brought to the reach of {} m within 1 %, since \
-                 some of their lengths are fixed or listed. The search leaves out robots that miss \
-                 the reach.",
+                "{missed} of {of} {which} cannot be brought to the reach of {} m within 1 % by the \
+                 lengths that `links` leaves free. The search leaves out robots that miss the reach.",
                 search.reach
             )
         })
@@ -242,11 +246,18 @@ impl SynthesisFinding<'_> {
             exactly(best),
         );
         let fitted = winner.draft.measures.merit(merit).value;
-        add(
-            "samples its limits were fitted on (biased)",
-            effort.fit_samples,
-            exactly(fitted),
-        );
+        let (fit, samples) = match merit {
+            // Every margin is 0 on the samples themselves.
+            Merit::Margin => {
+                let samples = u64::from(MARGIN_SAMPLES) * effort.fit_samples;
+                ("samples its limits were not fitted on", samples)
+            }
+            _ => (
+                "samples its limits were fitted on (biased)",
+                effort.fit_samples,
+            ),
+        };
+        add(fit, samples, exactly(fitted));
         if let Some(chosen) = search.winner() {
             let value = chosen.held_out.merit(merit);
             add("samples it was chosen on", effort.selection_samples, value);

@@ -87,7 +87,7 @@ impl Run<'_> {
             Some(Stage::Synthesis(search)) => *search,
             saved if genetic => {
                 let bred = self.breed(saved, starts)?;
-                let leaders = bred.leaders(settings.runs as usize);
+                let leaders = bred.leaders(&self.problem, settings.runs as usize);
                 Synthesis::of_drafts(settings, self.study.seed, &leaders, bred.evaluations())
             }
             _ => Synthesis::new(settings, self.study.seed, starts),

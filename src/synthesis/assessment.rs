@@ -157,7 +157,8 @@ impl DesignProblem {
         let arm = Arm::of_links(&self.links, links)?;
         let atlas = self.atlas(&arm, look, None)?;
         let limits = self.fit(&arm, &atlas, starts, care, look.seed);
-        Some(self.draft_of(links, &arm, &atlas, limits))
+        let draft = self.draft_of(links, &arm, &atlas, limits);
+        Some(self.with_margin_apart(draft, look))
     }
 
     /// `links` with given limits, measured on fresh samples.

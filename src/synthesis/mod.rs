@@ -22,6 +22,7 @@ mod sensitivity;
 
 pub use arm::Arm;
 pub use assessment::{Bounds, Care, DesignProblem, Draft, Look};
+pub use beyond_size::MARGIN_SAMPLES;
 pub use finalists::{Finalist, REPLICATES};
 pub use link_space::{Column, Constants, LinkRow, LinkSpace, Links, Parameter, total_length};
 pub use margin::{AtMargin, WIDEST_MARGIN};

@@ -1,8 +1,8 @@
 //! Robots that the bounds keep from the reach at which robots are compared.
 //!
-//! A length that is fixed or comes from a list does not scale with the others, so that some robots
-//! cannot be brought to the reach 1. They are left out of a search; that many were is worth
-//! knowing.
+//! A length that is fixed or comes from a list does not scale with the others, and one at its bound
+//! scales one way only, so that some robots cannot be brought to the reach 1. They are left out of
+//! a search; that many were is worth knowing.
 
 use super::link_space::{LinkSpace, Links};
 use super::seeds::{Purpose, sample_seed};

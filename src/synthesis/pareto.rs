@@ -152,11 +152,11 @@ impl ParetoSearch {
         front
     }
 
-    /// The best of the population by the first merit on held-out samples, at most `count`.
-    pub fn leaders(&self, count: usize) -> Vec<Draft> {
-        let first = |robot: &FrontRobot| merit_values(&robot.held_out, &self.merits)[0];
+    /// The best of the population by the score of `problem` on held-out samples, at most `count`.
+    pub fn leaders(&self, problem: &DesignProblem, count: usize) -> Vec<Draft> {
+        let score = |robot: &FrontRobot| problem.score(&robot.held_out);
         let mut robots: Vec<&FrontRobot> = self.front.iter().collect();
-        robots.sort_by(|a, b| first(b).total_cmp(&first(a)));
+        robots.sort_by(|a, b| score(b).total_cmp(&score(a)));
         let leaders = robots.into_iter().take(count);
         leaders.map(|robot| robot.draft.clone()).collect()
     }
@@ -234,7 +234,7 @@ impl ParetoSearch {
     fn breed(&mut self, problem: &DesignProblem) {
         let look = self.look();
         if self.generation.is_multiple_of(RENEWED) {
-            let again = |draft: &Draft| problem.measured(&draft.links, &draft.limits, look);
+            let again = |draft: &Draft| problem.measured_apart(&draft.links, &draft.limits, look);
             let renewed: Vec<Draft> = self.population.par_iter().filter_map(again).collect();
             self.evaluations += self.population.len() as u64;
             self.population = renewed;
@@ -311,7 +311,7 @@ impl ParetoSearch {
             }
             _ => moved(&a.limits, problem.min_width, rng),
         };
-        let draft = problem.measured(&links, &limits, look);
+        let draft = problem.measured_apart(&links, &limits, look);
         draft.ok_or(LeftOut::Nothing)
     }
 
