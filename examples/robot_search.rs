@@ -20,10 +20,12 @@ fn main() {
         failures: FailureSet::any(4),
         min_width: 20f64.to_radians(),
         merit: Merit::Share,
+        merits: vec![Merit::Share],
         bounds: Bounds {
             most_length: 1.8,
             least_fill: 0.25,
             least_pre_failure_share: 0.3,
+            least_share: 0.0,
         },
         atlas: AtlasSettings::default(),
     };

@@ -148,10 +148,12 @@ fn problem(n: usize, twists: &[f64], most: f64) -> DesignProblem {
         failures: FailureSet::any(n),
         min_width: 20f64.to_radians(),
         merit: Merit::Share,
+        merits: vec![Merit::Share],
         bounds: Bounds {
             most_length: 1.8,
             least_fill: 0.25,
             least_pre_failure_share: 0.3,
+            least_share: 0.0,
         },
         atlas: AtlasSettings {
             tolerance: 0.02,

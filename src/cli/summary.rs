@@ -145,6 +145,13 @@ fn robots(result: &Value, text: &mut String) {
             line(label, estimate);
         }
     }
+    let honesty = &result["honesty"];
+    if let Some(merit) = honesty["merit"].as_str().filter(|merit| *merit != "share") {
+        let of = |key: &str| honesty["reported"][key].as_f64().unwrap_or(f64::NAN);
+        let unit = if merit == "margin" { "°" } else { "" };
+        let value = with_error(of("value"), of("standard_error"));
+        let _ = writeln!(text, "  {merit:<25} {value}{unit}");
+    }
     if let Some(front) = result["front"].as_array() {
         let _ = writeln!(text, "  {:<25} {}", "robots of the front", front.len());
     }

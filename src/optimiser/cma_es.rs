@@ -123,6 +123,11 @@ impl CmaEs {
     /// better half counts all the same.
     pub fn tell(&mut self, best_first: &[&[f64]]) {
         let n = self.mean.len();
+        if n == 0 {
+            // Nothing to learn: all points are the one there is.
+            self.generation += 1;
+            return;
+        }
         let c = Constants::new(n, self.population);
         let parents: Vec<(f64, DVector<f64>)> = c
             .weights
@@ -195,6 +200,9 @@ impl CmaEs {
     /// Principal axes of the covariance as columns, and the standard deviations along them.
     fn axes(&self) -> (DMatrix<f64>, Vec<f64>) {
         let n = self.mean.len();
+        if n == 0 {
+            return (DMatrix::zeros(0, 0), Vec::new());
+        }
         let eigen = DMatrix::from_row_slice(n, n, &self.covariance).symmetric_eigen();
         // Directions in which nothing was learnt must not die out altogether.
         let floor = 1e-14 * eigen.eigenvalues.max().max(f64::MIN_POSITIVE);
@@ -242,6 +250,16 @@ mod tests {
         };
         let found = minimise(banana, vec![-0.5; 4], 500);
         assert!(banana(found.mean()) < 1e-8);
+    }
+
+    /// A single coordinate, and none at all: a space of one point.
+    #[test]
+    fn few_coordinates() {
+        let found = minimise(|x| (x[0] - 2.0).powi(2), vec![0.0], 100);
+        assert!((found.mean()[0] - 2.0).abs() < 1e-6);
+        let found = minimise(|_| 0.0, Vec::new(), 3);
+        assert_eq!((found.generation(), found.mean()), (3, &[][..]));
+        assert_eq!(found.ask(&mut stream(1, 0)), vec![Vec::<f64>::new(); 4]);
     }
 
     #[test]

@@ -6,6 +6,8 @@ use super::number::subscript;
 /// number counts from 1.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum DesignParameter {
+    /// Length l of a planar robot's link.
+    Link(usize),
     /// Length a along x.
     Length(usize),
     /// Offset d along z.
@@ -24,6 +26,7 @@ impl DesignParameter {
     /// As in a figure: "a₂", "α₃", "θ₄ upper".
     pub fn label(self) -> String {
         match self {
+            DesignParameter::Link(link) => format!("l{}", subscript(link)),
             DesignParameter::Length(joint) => format!("a{}", subscript(joint)),
             DesignParameter::Offset(joint) => format!("d{}", subscript(joint)),
             DesignParameter::Twist(joint) => format!("α{}", subscript(joint)),
@@ -36,6 +39,7 @@ impl DesignParameter {
     /// As in a table: "a_2", "alpha_3", "upper_limit_4".
     pub fn name(self) -> String {
         match self {
+            DesignParameter::Link(link) => format!("l_{link}"),
             DesignParameter::Length(joint) => format!("a_{joint}"),
             DesignParameter::Offset(joint) => format!("d_{joint}"),
             DesignParameter::Twist(joint) => format!("alpha_{joint}"),

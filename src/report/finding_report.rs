@@ -2,7 +2,7 @@
 
 use super::error::ReportError;
 use super::figure::{Figure, Format, figure_png, write_rendered};
-use super::html::{InlineFigure, document, inlined, notes, sources};
+use super::html::{InlineFigure, document, files, inlined, notes, sources};
 use super::result_files::{write_json, write_text};
 use super::style::COLUMN;
 use super::table::Table;
@@ -108,10 +108,7 @@ fn page_of(report: &FindingReport, figures: &[InlineFigure]) -> String {
             h2 { "Figures" }
             div.figures { @for figure in figures { (inlined(figure)) } }
         }
-        @if !report.files.is_empty() {
-            h2 { "Files" }
-            ul { @for (name, _) in &report.files { li { a href=(name) download { (name) } } } }
-        }
+        (files(&report.files))
         (sources(&report.study_toml, &report.provenance, &report.result_json))
     };
     document(&report.title, &body)

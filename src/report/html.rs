@@ -48,9 +48,20 @@ pub fn page(report: &Report, figures: &[InlineFigure]) -> String {
         @if report.points.is_some() {
             p { "The shares of all cells as points for ParaView: " code { (POINTS) } "." }
         }
+        (files(&report.files))
         (sources(&report.study_toml, &report.provenance, &report.result_json))
     };
     document(&report.title, &body)
+}
+
+/// Further files beside the page, by name.
+pub(super) fn files(files: &[(String, String)]) -> Markup {
+    html! {
+        @if !files.is_empty() {
+            h2 { "Files" }
+            ul { @for (name, _) in files { li { a href=(name) download { (name) } } } }
+        }
+    }
 }
 
 /// A whole page.

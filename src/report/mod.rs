@@ -86,6 +86,7 @@ mod ticks;
 mod trade_off_figure;
 mod training_curve;
 mod workspace_figure;
+mod workspace_pair_figure;
 mod write;
 
 pub use angle_density::AngleDensity;
@@ -134,4 +135,5 @@ pub use table::Table;
 pub use trade_off_figure::{TradeOffFigure, TradeOffObjective, TradeOffPoint};
 pub use training_curve::{TrainingCurve, TrainingEpoch};
 pub use workspace_figure::WorkspaceFigure;
+pub use workspace_pair_figure::WorkspacePairFigure;
 pub use write::{Report, write_report};

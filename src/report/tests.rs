@@ -143,6 +143,7 @@ fn report(sample: &Sample) -> Report<'_> {
         workspace: Some(figure(sample)),
         figures: vec![],
         points: None,
+        files: Vec::new(),
         convergence: Some(convergence()),
         sensitivity: Some(sensitivity()),
         result_json: serde_json::json!({ "schema": 1 }),

@@ -2,7 +2,7 @@
 //! S4 Fig. 3b].
 
 use super::arm::Arm;
-use super::canvas::{Canvas, Size};
+use super::canvas::{Canvas, Point, Size};
 use super::figure::Figure;
 use super::label::{LEGEND_ROW, Label, Swatch, legend};
 use super::panel::{BOTTOM, LEFT, Panel};
@@ -64,31 +64,12 @@ impl Figure for WorkspaceFigure<'_> {
     }
 
     fn draw(&self, canvas: &mut Canvas) {
-        let reach = self.reach();
-        let panel = Panel {
-            left: LEFT,
-            top: self.head(),
-            width: self.side(),
-            height: self.side(),
-            x: [-reach, reach],
-            y: [-reach, reach],
-        };
         let title = Label::new(&self.title, TITLE).bold().align(HPos::Center);
         title.draw_within(canvas, [0.5 * COLUMN, 10.0], COLUMN - 2.0 * MARGIN);
-        self.draw_legend(canvas);
-        match self.map {
-            WorkspaceMap::Rings(map) => ring_picture::draw(canvas, &panel, map),
-            WorkspaceMap::Shares(map) => draw_shares(canvas, &panel, map),
-        }
-        if self.is_empty() {
-            panel.remark(canvas, "W_F is empty");
-        }
-        let arm = Arm::new(self.links, &self.arm_angles);
-        arm.draw(canvas, &panel, self.limits, self.wedge());
-        let ticks = ticks::round(-reach, reach, 5);
-        panel.axes(canvas, &ticks, &ticks, true);
-        panel.x_label(canvas, "x (m)");
-        panel.y_label(canvas, "y (m)", &ticks);
+        let top = self.head() - 1.5 * LEGEND_ROW - 4.0;
+        let entries = self.legend_entries();
+        legend(canvas, [14.0, top], COLUMN - 14.0 - MARGIN, 2, &entries);
+        self.draw_in(canvas, [LEFT, self.head()], self.side(), self.reach());
     }
 
     fn table(&self) -> Table {
@@ -108,13 +89,43 @@ impl WorkspaceFigure<'_> {
         }
     }
 
-    /// Side of the square plot, points.
-    fn side(&self) -> f64 {
-        let right = match self.map {
+    /// The workspace and the arm in a square of `side` points, axes beside it to ±`reach` metres, and
+    /// a colour bar to the right where colours tell shares.
+    pub(super) fn draw_in(&self, canvas: &mut Canvas, [left, top]: Point, side: f64, reach: f64) {
+        let panel = Panel {
+            left,
+            top,
+            width: side,
+            height: side,
+            x: [-reach, reach],
+            y: [-reach, reach],
+        };
+        match self.map {
+            WorkspaceMap::Rings(map) => ring_picture::draw(canvas, &panel, map),
+            WorkspaceMap::Shares(map) => draw_shares(canvas, &panel, map),
+        }
+        if self.is_empty() {
+            panel.remark(canvas, "W_F is empty");
+        }
+        let arm = Arm::new(self.links, &self.arm_angles);
+        arm.draw(canvas, &panel, self.limits, self.wedge());
+        let ticks = ticks::round(-reach, reach, 5);
+        panel.axes(canvas, &ticks, &ticks, true);
+        panel.x_label(canvas, "x (m)");
+        panel.y_label(canvas, "y (m)", &ticks);
+    }
+
+    /// Space right of the plot, points.
+    pub(super) fn right(&self) -> f64 {
+        match self.map {
             WorkspaceMap::Rings(_) => MARGIN + 2.0,
             WorkspaceMap::Shares(_) => BAR,
-        };
-        COLUMN - LEFT - right
+        }
+    }
+
+    /// Side of the square plot, points.
+    fn side(&self) -> f64 {
+        COLUMN - LEFT - self.right()
     }
 
     /// Height of title and legend above the plot, points.
@@ -124,7 +135,7 @@ impl WorkspaceFigure<'_> {
     }
 
     /// Half the side of the plot, metres.
-    fn reach(&self) -> f64 {
+    pub(super) fn reach(&self) -> f64 {
         let [_, outer] = match self.map {
             WorkspaceMap::Rings(map) => map.unrestricted,
             WorkspaceMap::Shares(map) => map.unrestricted,
@@ -143,7 +154,8 @@ impl WorkspaceFigure<'_> {
         }
     }
 
-    fn draw_legend(&self, canvas: &mut Canvas) {
+    /// What the legend tells.
+    pub(super) fn legend_entries(&self) -> Vec<(Swatch, &'static str)> {
         let mut entries = vec![
             (Swatch::Area(PALE, GREY), "unrestricted workspace"),
             (Swatch::Arm(INK), "arm"),
@@ -156,8 +168,7 @@ impl WorkspaceFigure<'_> {
             entries.insert(0, (Swatch::Area(SKY, SKY), "fault-tolerant workspace W_F"));
             entries.swap(1, 2);
         }
-        let top = self.head() - 1.5 * LEGEND_ROW - 4.0;
-        legend(canvas, [14.0, top], COLUMN - 14.0 - MARGIN, 2, &entries);
+        entries
     }
 }
 

@@ -52,6 +52,8 @@ pub struct Report<'a> {
     pub convergence: Option<Convergence>,
     /// Scores around the optimum, if they were computed.
     pub sensitivity: Option<Sensitivity>,
+    /// Further files to be used elsewhere, such as a robot's: name and text.
+    pub files: Vec<(String, String)>,
     /// Written as `result.json`.
     pub result_json: serde_json::Value,
     /// The study as run, written as `study.toml`.
@@ -124,7 +126,7 @@ pub(super) fn write_figures<'f>(
     Ok((written, inline))
 }
 
-/// Writes all figures with their tables, `result.json`, `study.toml`, `report.html` and, if there
+/// Writes all figures with their tables, the further files, `result.json`, `study.toml`, `report.html` and, if there
 /// are any, `points.vtk` into `directory`; returns the files' paths. The page contains all figures whatever the `formats`.
 pub fn write_report(
     report: &Report,
@@ -138,6 +140,10 @@ pub fn write_report(
     if let Some(map) = report.points {
         write_points(map, &path(POINTS))?;
         written.push(path(POINTS));
+    }
+    for (name, text) in &report.files {
+        write_text(&path(name), text)?;
+        written.push(path(name));
     }
     write_text(&path("study.toml"), &report.study_toml)?;
     write_text(&path("report.html"), &page(report, &inline))?;

@@ -247,6 +247,7 @@ impl Run<'_> {
             workspace: None,
             figures: Vec::new(),
             points: None,
+            files: Vec::new(),
             convergence: optimum.map(|optimum| convergence(study, optimum, self.searching)),
             sensitivity: None,
             result_json,

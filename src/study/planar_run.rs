@@ -3,22 +3,23 @@
 use super::optimise::{Optimum, Session, Terms, search};
 use super::picture;
 use super::planar_arm::PlanarStudy;
+use super::planar_winner::PlanarWinner;
 use super::report_parts::{convergence, failures_label, formats, provenance_rows, size_notes};
 use super::result::Finding;
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::{Estimator, Optimise, Question, Study};
 use super::surrogate_search::{SurrogateTrace, search_through};
 use crate::optimiser::CoordinateAscentSettings;
-use crate::report::{self, Report, WorkspaceFigure, write_report};
+use crate::report::{self, Figure, Report, WorkspaceFigure, write_report};
 use crate::workspace::{ArtificialLimits, WorkspaceMap, WorkspaceSizes};
 use serde_json::{Value, json};
 use std::time::Instant;
 
 /// Most sweeps for pose tasks, whose score costs milliseconds.
-const POSE_SWEEPS: usize = 25;
+pub(super) const POSE_SWEEPS: usize = 25;
 
 /// Relative gain of a sweep below which pose tasks have converged: their score is good to 1e-3.
-const POSE_TOLERANCE: f64 = 1e-5;
+pub(super) const POSE_TOLERANCE: f64 = 1e-5;
 
 /// Runs `study` to its report and returns the content of `result.json`.
 ///
@@ -181,17 +182,43 @@ impl Outcome<'_> {
             threads: rayon::current_num_threads(),
             notes: &notes,
         };
+        let winner = self.winner(session)?;
+        let pair = winner.as_ref().map(|winner| winner.pair(&map, &sizes));
+        let tolerances = winner
+            .as_ref()
+            .map(|w| w.tolerances.figure(finding.title()));
         let mut report = self.report(&finding, &map, &sizes);
         report.sensitivity = sensitivity;
+        report.figures = pair.iter().map(|figure| figure as &dyn Figure).collect();
+        let last = tolerances.iter().map(|figure| figure as &dyn Figure);
+        report.figures.extend(last);
+        if let Some(winner) = &winner {
+            report.files = winner.files();
+            winner.add_to(&mut report.result_json);
+        }
         let result = report.result_json.clone();
         if figures {
             write_report(&report, &options.out, &formats(self.study))
                 .map_err(anyhow::Error::from)?;
         } else {
+            for (name, text) in &report.files {
+                let path = options.out.join(name);
+                report::write_text(&path, text).map_err(anyhow::Error::from)?;
+            }
             let path = options.out.join("result.json");
             report::write_json(&path, &result).map_err(anyhow::Error::from)?;
         }
         Ok(result)
+    }
+
+    /// The robot found, if links were searched.
+    fn winner(&self, session: &Session) -> Result<Option<PlanarWinner<'_>>, RunError> {
+        let optimise = match &self.study.question {
+            Question::Optimise(optimise) if optimise.search.links.is_some() => optimise,
+            _ => return Ok(None),
+        };
+        let (arm, limits) = (&self.arm, &self.limits);
+        PlanarWinner::new(self.study, optimise, arm, limits, session).map(Some)
     }
 
     fn report<'r>(
@@ -202,7 +229,6 @@ impl Outcome<'_> {
     ) -> Report<'r> {
         let study = self.study;
         let robot = &study.design.robot;
-        let title = study.title.clone().unwrap_or_else(|| study.name.clone());
         Report {
             study: study.name.clone(),
             robot: robot.name.clone(),
@@ -220,7 +246,10 @@ impl Outcome<'_> {
                 limits: &self.limits,
                 links: &self.arm.lengths,
                 arm_angles: picture::posture(&self.arm, &self.limits, map),
-                title: robot.name.clone(),
+                title: match finding.has_new_links() {
+                    true => format!("found, from {}", robot.name),
+                    false => robot.name.clone(),
+                },
             }),
             convergence: self
                 .optimum
@@ -229,11 +258,12 @@ impl Outcome<'_> {
             sensitivity: None,
             figures: Vec::new(),
             points: None,
+            files: Vec::new(),
             result_json: finding.to_json(),
             study_toml: self.study_toml.clone(),
             provenance: provenance_rows(self.study, finding.threads),
             notes: finding.notes.to_vec(),
-            title,
+            title: finding.title(),
         }
     }
 }

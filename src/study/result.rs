@@ -32,6 +32,17 @@ impl Finding<'_> {
         status(self.optimum)
     }
 
+    /// Heading of the report.
+    pub fn title(&self) -> String {
+        let title = self.study.title.clone();
+        title.unwrap_or_else(|| self.study.name.clone())
+    }
+
+    /// Whether the robot is another one than the design.
+    pub fn has_new_links(&self) -> bool {
+        matches!(&self.study.question, Question::Optimise(optimise) if optimise.search.links.is_some())
+    }
+
     pub fn to_json(&self) -> Value {
         let study = self.study;
         let mut result = json!({

@@ -2,12 +2,13 @@
 
 use super::file::StudyFile;
 use super::serve;
-use super::settings::{DegreeLimits, Design};
+use super::settings::{DegreeLimits, Design, Study};
 use super::synthesis_settings::SynthesisStudy;
-use super::{limits, synthesis_table};
+use super::{limits, synthesis_objectives, synthesis_table};
 use crate::diagnostic::{Place, Problems};
 use crate::manifold::MOST_REDUNDANT;
-use crate::synthesis::Arm;
+use crate::synthesis::{Arm, Links};
+use crate::workspace::FailureSet;
 
 /// Settings of `kind = "synthesis"`.
 #[derive(Clone, Debug, PartialEq)]
@@ -16,6 +17,17 @@ pub struct SynthesisQuestion {
     pub limits: Option<DegreeLimits>,
     /// The table.
     pub search: SynthesisStudy,
+}
+
+impl SynthesisQuestion {
+    /// F for the robots that are searched, which may have another number of joints than the design.
+    pub(super) fn failures(&self, study: &Study) -> FailureSet {
+        let joints = self.search.links.len();
+        match joints == study.design.robot.joints() {
+            true => study.failures.clone(),
+            false => FailureSet::any(joints).with_margin(study.failures.margin()),
+        }
+    }
 }
 
 /// The validated question; reports to `problems` whatever is wrong.
@@ -49,6 +61,9 @@ pub(super) fn synthesis(
         );
         return None;
     }
+    if let Some(item) = table {
+        synthesis_objectives::check(&item.value, count, task, problems);
+    }
     check_failures(file, problems, count, joints);
     if Arm::of_robot(&design.robot, task).is_none() {
         problems.reject(
@@ -61,6 +76,7 @@ pub(super) fn synthesis(
     }
     let search = synthesis_table::settings(table, joints, problems);
     check_idle(file, problems);
+    check_reach(file, problems, &search, design);
     let start = table.and_then(|item| item.value.design_place());
     if let Some(place) = start.filter(|_| search.links_of(&design.robot, task).is_none()) {
         problems.reject(
@@ -98,6 +114,43 @@ fn check_failures(file: &StudyFile, problems: &Problems, count: usize, joints: u
             );
         }
     }
+}
+
+/// Random robots of which at least one must have the reach.
+const TRIED: u32 = 64;
+
+/// Fixed lengths may keep all robots from the reach that is asked for.
+fn check_reach(file: &StudyFile, problems: &Problems, search: &SynthesisStudy, design: &Design) {
+    let task = file.space.value;
+    let links = file.synthesis.as_ref().and_then(|t| t.value.links.as_ref());
+    // Wrong rows have been reported.
+    let Some(links) = links.filter(|rows| rows.value.len() == search.links.len()) else {
+        return;
+    };
+    let space = search.link_space(task);
+    let start = search
+        .include_design
+        .then(|| search.links_of(&design.robot, task));
+    if start.flatten().is_some_and(|start| space.has_reach(&start)) {
+        return;
+    }
+    let robots: Vec<Links> = (0..TRIED).map(|k| space.numbered(1, k)).collect();
+    if robots.iter().any(|robot| space.has_reach(robot)) {
+        return;
+    }
+    let reaches = robots.iter().map(|robot| space.reach(robot));
+    let reaches: Vec<f64> = reaches.collect();
+    let metres = |share: f64| share * search.reach;
+    let least = metres(reaches.iter().copied().fold(f64::INFINITY, f64::min));
+    let most = metres(reaches.iter().copied().fold(0.0, f64::max));
+    problems.reject(
+        &links.place,
+        &format!(
+            "robots of these links reach from {least:.3} to {most:.3} m, none of them as far as asked"
+        ),
+        &format!("links of which robots with `reach` = {} m can be made", search.reach),
+        "change `reach`, or leave more lengths free",
+    );
 }
 
 fn check_idle(file: &StudyFile, problems: &Problems) {

@@ -1,36 +1,14 @@
 //! The figures of `kind = "synthesis"`.
 
 use super::robot_view::spatial_robot;
-use super::synthesis_page::{is_share, merit_text};
+use super::synthesis_merit::{merit_axis, merit_scale, merit_text, merit_unit};
 use super::synthesis_result::{Reference, SynthesisFinding, Winner};
 use crate::report::{
     DesignParameter, Figure, HistoryGeneration, HistoryStage, PairedRobot, ParameterSensitivity,
     ParameterSensitivityFigure, RobotPairFigure, SearchHistoryFigure, SectionOf, SectionPairFigure,
     TradeOffFigure, TradeOffObjective, TradeOffPoint,
 };
-use crate::synthesis::{
-    Column, Measures, Merit, ParetoSearch, Perturbed, Stage, Synthesis, merit_values,
-};
-
-/// Merits in a few words, for axes.
-fn axis(merit: Merit) -> &'static str {
-    match merit {
-        Merit::Share => "S_F / S₀ₘₐₓ",
-        Merit::BallShare => "ball share",
-        Merit::SizePerLength => "S_F / length^d",
-        Merit::PreFailureShare => "pre-failure share",
-        Merit::Survival => "survival W_F / W_0",
-        Merit::Slenderness => "reach / total length",
-    }
-}
-
-fn unit(merit: Merit) -> &'static str {
-    if is_share(merit) { "%" } else { "" }
-}
-
-fn scale(merit: Merit) -> f64 {
-    if is_share(merit) { 100.0 } else { 1.0 }
-}
+use crate::synthesis::{Column, Measures, ParetoSearch, Perturbed, Stage, Synthesis, merit_values};
 
 impl SynthesisFinding<'_> {
     /// All figures that there is something for.
@@ -108,7 +86,7 @@ impl SynthesisFinding<'_> {
 
     fn history(&self, search: &Synthesis, winner: &Winner) -> SearchHistoryFigure {
         let merit = self.question.search.objectives[0];
-        let percent = scale(merit);
+        let scale = merit_scale(merit);
         let mut stages: Vec<(u32, Stage, HistoryStage)> = Vec::new();
         let runs = self.question.search.effort.runs;
         let mut trials = 0;
@@ -130,10 +108,10 @@ impl SynthesisFinding<'_> {
                 stages.push((generation.run, generation.stage, stage));
             }
             if let Some((_, _, stage)) = stages.last_mut() {
-                let [upper, median, lower] = generation.quartiles.map(|score| percent * score);
+                let [upper, median, lower] = generation.quartiles.map(|score| scale * score);
                 stage.generations.push(HistoryGeneration {
                     at: generation.evaluations as f64,
-                    best: percent * generation.best,
+                    best: scale * generation.best,
                     median,
                     quartiles: [lower, upper],
                 });
@@ -141,11 +119,11 @@ impl SynthesisFinding<'_> {
         }
         let reported = winner.measures.merit(merit);
         SearchHistoryFigure {
-            score_label: axis(merit).into(),
-            unit: unit(merit).into(),
+            score_label: merit_axis(merit).into(),
+            unit: merit_unit(merit).into(),
             axis_label: "robots assessed".into(),
             stages: stages.into_iter().map(|(_, _, stage)| stage).collect(),
-            reported: Some([percent * reported.value, percent * reported.error]),
+            reported: Some([scale * reported.value, scale * reported.error]),
             title: self.heading(),
         }
     }
@@ -153,7 +131,7 @@ impl SynthesisFinding<'_> {
     fn sensitivity(&self, winner: &Winner) -> ParameterSensitivityFigure {
         let asked = &self.question.search;
         let merit = asked.objectives[0];
-        let percent = scale(merit);
+        let scale = merit_scale(merit);
         let parameter = |sensitivity: &crate::synthesis::ParameterSensitivity| {
             let changes = sensitivity.change;
             ParameterSensitivity {
@@ -164,12 +142,12 @@ impl SynthesisFinding<'_> {
                     Perturbed::Lower(joint) => DesignParameter::LowerLimit(joint + 1),
                     Perturbed::Upper(joint) => DesignParameter::UpperLimit(joint + 1),
                 },
-                change: changes.map(|change| percent * change.value),
-                error: changes.map(|change| percent * change.error),
+                change: changes.map(|change| scale * change.value),
+                error: changes.map(|change| scale * change.error),
             }
         };
         ParameterSensitivityFigure {
-            score_label: axis(merit).into(),
+            score_label: merit_axis(merit).into(),
             tolerance: format!(
                 "lengths ±{} mm, angles ±{}°",
                 1000.0 * asked.tolerance,
@@ -184,7 +162,9 @@ impl SynthesisFinding<'_> {
         let merits = pareto.merits();
         let scaled = |values: &[f64]| -> Vec<f64> {
             let pairs = values.iter().zip(merits);
-            pairs.map(|(value, merit)| scale(*merit) * value).collect()
+            pairs
+                .map(|(value, merit)| merit_scale(*merit) * value)
+                .collect()
         };
         let point = |label: String, measures: &Measures, is_on_front: bool| {
             let errors: Vec<f64> = merits.iter().map(|m| measures.merit(*m).error).collect();
@@ -207,8 +187,8 @@ impl SynthesisFinding<'_> {
             objectives: merits
                 .iter()
                 .map(|merit| TradeOffObjective {
-                    name: axis(*merit).into(),
-                    unit: unit(*merit).into(),
+                    name: merit_axis(*merit).into(),
+                    unit: merit_unit(*merit).into(),
                     is_larger_better: true,
                 })
                 .collect(),

@@ -1,35 +1,14 @@
 //! The page of `kind = "synthesis"`: sentences and tables.
 
 use super::settings::DegreeLimits;
+use super::synthesis_merit::{merit_label, merit_text};
 use super::synthesis_result::{Reference, SynthesisFinding, Winner, parameter_name};
 use crate::design::{Geometry, Robot};
 use crate::report::{Section, Table, with_error};
-use crate::synthesis::{Column, Links, Measures, Merit, Perturbed, Synthesis};
+use crate::synthesis::{
+    Column, Links, MARGIN_SAMPLES, Measures, Merit, Perturbed, Synthesis, WIDEST_MARGIN,
+};
 use crate::workspace::{ArtificialLimits, Estimate};
-
-/// Merits in words.
-pub(super) fn merit_label(merit: Merit) -> &'static str {
-    match merit {
-        Merit::Share => "S_F / S_0max",
-        Merit::BallShare => "ball share: S_F / ball of the reach",
-        Merit::SizePerLength => "S_F / (total length)^d",
-        Merit::PreFailureShare => "pre-failure share: W_0 / S_0max",
-        Merit::Survival => "survival: W_F / W_0",
-        Merit::Slenderness => "reach / total length",
-    }
-}
-
-/// Whether a merit is read in percent.
-pub(super) fn is_share(merit: Merit) -> bool {
-    !matches!(merit, Merit::SizePerLength | Merit::Slenderness)
-}
-
-pub(super) fn merit_text(merit: Merit, estimate: &Estimate) -> String {
-    match is_share(merit) {
-        true => percent(estimate),
-        false => with_error(estimate.value, estimate.error),
-    }
-}
 
 fn percent(estimate: &Estimate) -> String {
     format!(
@@ -37,6 +16,9 @@ fn percent(estimate: &Estimate) -> String {
         with_error(100.0 * estimate.value, 100.0 * estimate.error)
     )
 }
+
+/// Share of robots that miss the reach from which on a reader must know.
+const NOTABLE: f64 = 0.02;
 
 impl SynthesisFinding<'_> {
     /// The answer in sentences.
@@ -126,11 +108,58 @@ impl SynthesisFinding<'_> {
                 );
             }
         }
+        notes.extend(self.off_reach_note());
+        notes.extend(self.objectives_notes());
         if self.study.failures.margin() > 0.0 {
             notes.push(format!(
                 "Joints may lock up to {}° beyond their limits.",
                 self.study.failures.margin().to_degrees()
             ));
+        }
+        notes
+    }
+
+    /// That robots were left out since their lengths cannot be scaled to the reach.
+    fn off_reach_note(&self) -> Option<String> {
+        let search = &self.question.search;
+        let (missed, of, which) = match self.pareto {
+            Some(pareto) => (pareto.off_reach(), pareto.evaluations(), "robots"),
+            None => {
+                let missed = u64::from(self.screened_off_reach());
+                (missed, search.effort.screened, "random robots")
+            }
+        };
+        (missed as f64 > NOTABLE * of as f64).then(|| {
+            format!(
+                "{missed} of {of} {which} cannot be brought to the reach of {} m within 1 % by the \
+                 lengths that `links` leaves free. The search leaves out robots that miss the reach.",
+                search.reach
+            )
+        })
+    }
+
+    /// What is not obvious of a search for merits that are blind to the size of W_F.
+    fn objectives_notes(&self) -> Vec<String> {
+        let mut notes = Vec::new();
+        let search = &self.question.search;
+        let [merit, ..] = search.objectives[..] else {
+            return notes;
+        };
+        if let Some(winner) = self.winner {
+            if merit.is_blind_to_size() {
+                notes.push(format!(
+                    "Links were searched for \"{merit}\", limits were fitted for S_F: other limits \
+                     may do better by it."
+                ));
+            }
+            let share = winner.measures.share;
+            if share.value + 2.0 * share.error < search.min_share {
+                notes.push(format!(
+                    "The robot found misses `min_share` = {}: the search ended at a robot whose \
+                     score is lowered for that.",
+                    search.min_share
+                ));
+            }
         }
         notes
     }
@@ -175,28 +204,18 @@ impl SynthesisFinding<'_> {
             table.rows.push(row);
         };
         for merit in Merit::ALL {
-            add(merit_label(merit), &|m| merit_text(merit, &m.merit(merit)));
+            add(merit_label(merit), &|m| match m.has(merit) {
+                true => merit_text(merit, &m.merit(merit)),
+                false => "–".into(),
+            });
         }
         add("S_0max / ball of the reach", &|m| percent(&m.fill));
-        if let Some(dexterity) = &winner.dexterity {
-            for (name, value) in [
-                (
-                    "least null-vector component, mean over W_F",
-                    dexterity.null_component,
-                ),
-                (
-                    "1 / condition number, mean over W_F",
-                    dexterity.inverse_condition,
-                ),
-            ] {
-                let value = with_error(value.value, value.error);
-                table.rows.push(vec![name.to_owned(), value]);
-            }
-        }
         Section {
             heading: "Merits".into(),
             text: "Measured on samples that were used for nothing else, ± one standard error. The \
-                   ball of the reach holds all task points within the reach of the wrist."
+                   ball of the reach holds all task points within the reach of the wrist. Means over \
+                   W_F are those of the best configuration inside the limits; there are none where \
+                   W_F is empty, or with more than one degree of redundancy."
                 .into(),
             table,
         }
@@ -227,11 +246,18 @@ impl SynthesisFinding<'_> {
             exactly(best),
         );
         let fitted = winner.draft.measures.merit(merit).value;
-        add(
-            "samples its limits were fitted on (biased)",
-            effort.fit_samples,
-            exactly(fitted),
-        );
+        let (fit, samples) = match merit {
+            // Every margin is 0 on the samples themselves.
+            Merit::Margin => {
+                let samples = u64::from(MARGIN_SAMPLES) * effort.fit_samples;
+                ("samples its limits were not fitted on", samples)
+            }
+            _ => (
+                "samples its limits were fitted on (biased)",
+                effort.fit_samples,
+            ),
+        };
+        add(fit, samples, exactly(fitted));
         if let Some(chosen) = search.winner() {
             let value = chosen.held_out.merit(merit);
             add("samples it was chosen on", effort.selection_samples, value);
@@ -274,15 +300,15 @@ impl SynthesisFinding<'_> {
 
 fn margin_section(winner: &Winner) -> Section {
     let mut table = Table::new(&["margin (deg)", "S_F / S_0max"]);
-    for point in &winner.margins.points {
+    for point in &winner.margins {
         let margin = format!("{:.0}", point.margin.to_degrees());
         table.rows.push(vec![margin, percent(&point.share)]);
     }
-    let text = match winner.margins.ten_percent {
+    let text = match tenth(&winner.measures) {
         Some(margin) => format!(
             "A joint that overshoots its limits before it locks costs fault tolerance. A margin of \
-             {:.1}° costs a tenth of it.",
-            margin.to_degrees()
+             {} costs a tenth of it.",
+            merit_text(Merit::Margin, &margin)
         ),
         None => "A joint that overshoots its limits before it locks costs fault tolerance.".into(),
     };
@@ -291,6 +317,12 @@ fn margin_section(winner: &Winner) -> Section {
         text,
         table,
     }
+}
+
+/// The margin that costs a tenth of S_F, if that is lost within the margins looked at.
+pub(super) fn tenth(measures: &Measures) -> Option<Estimate> {
+    let is_inside = |margin: &Estimate| margin.value > 0.0 && margin.value < WIDEST_MARGIN;
+    measures.margin.filter(is_inside)
 }
 
 /// Rows of a robot with its limits; only the limits for one that has no rows.

@@ -1,20 +1,22 @@
 //! The result of `kind = "synthesis"`: numbers, files and page.
 
+use super::found_robot;
 use super::report_parts::{formats, provenance_rows};
 use super::result::{SCHEMA, limits_deg, provenance};
 use super::run::{RunError, RunOptions};
 use super::settings::{DegreeLimits, Study};
 use super::structure;
 use super::synthesis_check::SynthesisQuestion;
-use super::synthesis_page::tidy;
-use crate::design::{Robot, robot_to_toml, robot_to_urdf};
+use super::synthesis_merit::{history_json, merit_json, merit_number, merits_json};
+use super::synthesis_page::{tenth, tidy};
+use crate::design::Robot;
 use crate::manifold::Intolerance;
 use crate::report::{FindingReport, write_finding_report};
 use crate::synthesis::{
-    Arm, Column, Draft, Finalist, FrontRobot, Links, MarginCurve, Measures, Merit,
-    ParameterSensitivity, ParetoSearch, Perturbed, Synthesis,
+    Arm, AtMargin, Column, Draft, Finalist, FrontRobot, Links, Measures, ParameterSensitivity,
+    ParetoSearch, Perturbed, Synthesis,
 };
-use crate::workspace::hybrid::{Dexterity, SampleCounts};
+use crate::workspace::hybrid::SampleCounts;
 use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate, SpatialShareMap};
 use serde_json::{Value, json};
 
@@ -28,10 +30,7 @@ pub(super) struct Winner {
     /// Metres, of the map.
     pub reach: f64,
     /// The share when joints overshoot their limits.
-    pub margins: MarginCurve,
-    /// Of the best configurations inside the limits; with more than one degree of redundancy there
-    /// is none.
-    pub dexterity: Option<Dexterity>,
+    pub margins: Vec<AtMargin>,
     /// The estimate by inverse kinematics with locked joints, if it was asked for.
     pub check: Option<LockedJointEstimate>,
     /// Change of the merit with every parameter; empty if it was not asked for.
@@ -101,67 +100,35 @@ impl SynthesisFinding<'_> {
         let asked = &self.question.search;
         let space = asked.link_space(self.study.task);
         let mut robot = space.robot(&tidy(links, asked.reach), asked.reach, &name);
-        robot.source = Some(format!(
-            "found by faultspace {} from the study {}, seed {}",
-            env!("CARGO_PKG_VERSION"),
-            self.study.name,
-            self.study.seed
-        ));
+        robot.source = Some(found_robot::source(self.study));
         robot
     }
 
     /// Robot files, URDF files and a study of the winner, by name.
     fn files(&self) -> Vec<(String, String)> {
         let mut files = Vec::new();
-        let mut add = |folder: &str, links: &Links, limits: &ArtificialLimits, name: String| {
-            let robot = self.named_robot(links, name.clone());
-            let written = DegreeLimits::from_limits(limits, &robot);
-            let comments = [
-                format!(
-                    "Lower limits before a failure (deg): {:.4?}",
-                    written.lower_deg
-                ),
-                format!(
-                    "Upper limits before a failure (deg): {:.4?}",
-                    written.upper_deg
-                ),
-            ];
-            if let Ok(text) = robot_to_toml(&robot, &comments) {
-                files.push((format!("{folder}{name}.toml"), text));
-            }
-            files.push((format!("{folder}{name}.urdf"), robot_to_urdf(&robot)));
+        let named = |draft: &Draft, name: String| {
+            let robot = self.named_robot(&draft.links, name);
+            found_robot::robot_files(&robot, &draft.limits)
         };
         if let Some(winner) = self.winner {
-            let draft = &winner.draft;
-            add("", &draft.links, &draft.limits, "robot".into());
+            files.extend(named(&winner.draft, "robot".into()));
         }
         let front = self.pareto.map(|pareto| pareto.front()).unwrap_or_default();
         for (number, robot) in (1..).zip(front) {
-            let draft = &robot.draft;
-            add(
-                "front/",
-                &draft.links,
-                &draft.limits,
-                format!("robot-{number:02}"),
+            let own = named(&robot.draft, format!("robot-{number:02}"));
+            files.extend(
+                own.into_iter()
+                    .map(|(name, text)| (format!("front/{name}"), text)),
             );
         }
         if let Some(winner) = self.winner {
-            files.push(("robot_study.toml".into(), self.estimate_study(winner)));
+            let (robot, limits) = (self.robot(&winner.draft.links), &winner.draft.limits);
+            let failures = &self.question.failures(self.study);
+            let study = found_robot::robot_study(self.study, &robot, limits, failures, "hybrid");
+            files.push(study);
         }
         files
-    }
-
-    /// A study that measures the winner anew.
-    fn estimate_study(&self, winner: &Winner) -> String {
-        let robot = self.robot(&winner.draft.links);
-        let limits = DegreeLimits::from_limits(&winner.draft.limits, &robot);
-        format!(
-            "# Measures the robot found anew, on other samples.\nkind = \"estimate\"\ndesign = \
-             \"robot.toml\"\nseed = 2\n\n[task]\nspace = \"{}\"\nmargin_deg = \
-             {}\n\n[limits]\nlower_deg = {:?}\nupper_deg = {:?}\n\n[estimator]\nmethod = \
-             \"hybrid\"\n",
-            self.study.task, self.study.margin_deg, limits.lower_deg, limits.upper_deg
-        )
     }
 
     fn to_json(&self) -> Value {
@@ -180,10 +147,12 @@ impl SynthesisFinding<'_> {
             let front: Vec<Value> = pareto.front().iter().map(|r| self.front_robot(r)).collect();
             result["front"] = json!(front);
             result["evaluations"] = json!(pareto.evaluations());
+            result["off_reach"] = json!(pareto.off_reach());
         }
         if let Some(reference) = self.reference {
             result["reference"] = self.reference_json(reference);
         }
+        result["notes"] = json!(self.notes());
         result["seconds"] = json!({ "total": self.seconds, "search": self.searched });
         result["provenance"] = provenance(study, rayon::current_num_threads());
         result
@@ -193,27 +162,28 @@ impl SynthesisFinding<'_> {
         let chosen = search.winner();
         result["robot"] = self.links_json(&winner.draft.links);
         result["limits_deg"] = self.limits_json(&winner.draft.limits, &winner.draft.links);
-        result["merits"] = merits(&winner.measures);
+        result["merits"] = merits_json(&winner.measures);
         result["samples"] = json!({
             "report": winner.counts.samples,
             "reachable": winner.counts.reachable,
             "failed": winner.counts.failed,
         });
         let merit = self.question.search.objectives[0];
+        let number = |value: f64| merit_number(merit, value);
         let reported = winner.measures.merit(merit);
         let fitted = winner.draft.measures.merit(merit).value;
         let best_seen = search.history().iter().map(|g| g.best).fold(0.0, f64::max);
         result["honesty"] = json!({
             "merit": merit,
-            "reported": estimate(&reported),
-            "on_selection_samples": chosen.map(|c| estimate(&c.held_out.merit(merit))),
-            "on_fit_samples": fitted,
-            "best_of_all_generations": best_seen,
-            "fit_bias": fitted - reported.value,
-            "search_bias": best_seen - reported.value,
+            "reported": merit_json(merit, &reported),
+            "on_selection_samples": chosen.map(|c| merit_json(merit, &c.held_out.merit(merit))),
+            "on_fit_samples": number(fitted),
+            "best_of_all_generations": number(best_seen),
+            "fit_bias": number(fitted - reported.value),
+            "search_bias": number(best_seen - reported.value),
         });
-        result["margin"] = margins(&winner.margins);
-        if let Some(dexterity) = &winner.dexterity {
+        result["margin"] = margins(winner);
+        if let Some(dexterity) = &winner.measures.dexterity {
             result["dexterity"] = json!({
                 "poses": dexterity.poses,
                 "least_null_vector_component": estimate(&dexterity.null_component),
@@ -237,20 +207,32 @@ impl SynthesisFinding<'_> {
         result["screening"] = json!({
             "robots": search.screening().len(),
             "structurally_intolerant": search.intolerant(),
+            "off_reach": self.screened_off_reach(),
         });
         result["evaluations"] = json!(search.evaluations());
-        result["history"] = json!(search.history());
+        result["history"] = history_json(merit, search.history());
+    }
+
+    /// How many of the random robots that a search begins with miss the reach.
+    pub(super) fn screened_off_reach(&self) -> u32 {
+        let search = &self.question.search;
+        // Robots that were given are numbered first.
+        let given = u32::from(search.include_design);
+        let screened = given..given + search.effort.screened as u32;
+        let space = search.link_space(self.study.task);
+        space.off_reach(self.study.seed, screened)
     }
 
     fn finalist(&self, finalist: &Finalist) -> Value {
+        let merit = self.question.search.objectives[0];
         json!({
             "name": finalist.name,
-            "score": finalist.score,
-            "standard_error": finalist.error,
+            "score": merit_number(merit, finalist.score),
+            "standard_error": merit_number(merit, finalist.error),
             "round": finalist.is_round,
             "robot": self.links_json(&finalist.draft.links),
             "limits_deg": self.limits_json(&finalist.draft.limits, &finalist.draft.links),
-            "merits": merits(&finalist.held_out),
+            "merits": merits_json(&finalist.held_out),
         })
     }
 
@@ -258,8 +240,8 @@ impl SynthesisFinding<'_> {
         json!({
             "robot": self.links_json(&robot.draft.links),
             "limits_deg": self.limits_json(&robot.draft.limits, &robot.draft.links),
-            "merits": merits(&robot.held_out),
-            "merits_while_searching": merits(&robot.draft.measures),
+            "merits": merits_json(&robot.held_out),
+            "merits_while_searching": merits_json(&robot.draft.measures),
         })
     }
 
@@ -271,7 +253,7 @@ impl SynthesisFinding<'_> {
             "limits_deg": limits_deg(&limits),
             "limits_given": reference.given,
             "reach": reference.arm.extent.reach,
-            "merits": merits(&reference.measures),
+            "merits": merits_json(&reference.measures),
         });
         if let Some(verdict) = &reference.verdict {
             json["structure"] = structure::to_json(verdict);
@@ -304,8 +286,9 @@ impl SynthesisFinding<'_> {
         let [less, more] = &sensitivity.change;
         let mut json = json!({ "parameter": parameter_name(sensitivity.what) });
         json[key] = json!(tolerance);
-        json["less"] = estimate(less);
-        json["more"] = estimate(more);
+        let merit = self.question.search.objectives[0];
+        json["less"] = merit_json(merit, less);
+        json["more"] = merit_json(merit, more);
         json
     }
 
@@ -325,17 +308,19 @@ pub(super) fn parameter_name(what: Perturbed) -> String {
     }
 }
 
-fn margins(curve: &MarginCurve) -> Value {
-    let point = |point: &crate::synthesis::AtMargin| {
+fn margins(winner: &Winner) -> Value {
+    let point = |point: &AtMargin| {
         json!({
             "margin_deg": point.margin.to_degrees(),
             "share": point.share.value,
             "standard_error": point.share.error,
         })
     };
+    let tenth = tenth(&winner.measures);
     json!({
-        "points": curve.points.iter().map(point).collect::<Vec<Value>>(),
-        "ten_percent_deg": curve.ten_percent.map(f64::to_degrees),
+        "points": winner.margins.iter().map(point).collect::<Vec<Value>>(),
+        "ten_percent_deg": tenth.map(|margin| margin.value.to_degrees()),
+        "standard_error_deg": tenth.map(|margin| margin.error.to_degrees()),
     })
 }
 
@@ -353,15 +338,4 @@ fn check_json(check: &LockedJointEstimate, reported: &Estimate) -> Value {
 
 fn estimate(estimate: &Estimate) -> Value {
     json!({ "value": estimate.value, "standard_error": estimate.error })
-}
-
-/// All merits by name, with L/R and the fill.
-fn merits(measures: &Measures) -> Value {
-    let mut all = serde_json::Map::new();
-    for merit in Merit::ALL {
-        all.insert(merit.name().into(), estimate(&measures.merit(merit)));
-    }
-    all.insert("fill".into(), estimate(&measures.fill));
-    all.insert("length_in_reaches".into(), json!(measures.length));
-    Value::Object(all)
 }

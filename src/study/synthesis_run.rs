@@ -10,7 +10,7 @@ use crate::synthesis::{
     Arm, Care, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
     REPLICATES, Synthesis, Tolerances, sample_seed,
 };
-use crate::workspace::{ArtificialLimits, FailureSet, LockedJointCheck, LockedJointEstimate};
+use crate::workspace::{ArtificialLimits, LockedJointCheck, LockedJointEstimate};
 use serde_json::Value;
 use std::sync::atomic::Ordering;
 
@@ -26,7 +26,7 @@ pub(super) fn run(
 ) -> Result<Value, RunError> {
     ready.begin(options)?;
     let asked = &question.search;
-    let problem = asked.problem(study.task, &failures(study, question));
+    let problem = asked.problem(study.task, &question.failures(study));
     let starts: Vec<Links> = match asked.include_design {
         true => asked
             .links_of(&study.design.robot, study.task)
@@ -49,18 +49,6 @@ pub(super) fn run(
     ready.session.store.remove();
     Ok(result)
 }
-
-/// F for the robots that are searched, which may have another number of joints than the design.
-fn failures(study: &Study, question: &SynthesisQuestion) -> FailureSet {
-    let joints = question.search.links.len();
-    match joints == study.design.robot.joints() {
-        true => study.failures.clone(),
-        false => FailureSet::any(joints).with_margin(study.failures.margin()),
-    }
-}
-
-/// Task points on which dexterity is measured, at most.
-const DEXTEROUS: u64 = 4000;
 
 /// Margins that are reported, radians.
 fn margins() -> Vec<f64> {
@@ -99,7 +87,7 @@ impl Run<'_> {
             Some(Stage::Synthesis(search)) => *search,
             saved if genetic => {
                 let bred = self.breed(saved, starts)?;
-                let leaders = bred.leaders(settings.runs as usize);
+                let leaders = bred.leaders(&self.problem, settings.runs as usize);
                 Synthesis::of_drafts(settings, self.study.seed, &leaders, bred.evaluations())
             }
             _ => Synthesis::new(settings, self.study.seed, starts),
@@ -197,7 +185,7 @@ impl Run<'_> {
     /// The winner measured on samples that nothing was fitted to or chosen by.
     fn winner(&self, draft: &Draft) -> Result<Winner, RunError> {
         self.tell(0.82, draft.score, "measuring the winner on fresh samples");
-        let problem = &self.problem;
+        let problem = &self.problem.with_all_merits();
         let nothing = || anyhow::anyhow!("the winner reaches nothing");
         let robot = problem.links.robot(&draft.links, 1.0, "winner");
         let arm = Arm::of_robot(&robot, self.study.task).ok_or_else(nothing)?;
@@ -208,8 +196,6 @@ impl Run<'_> {
         self.check_interrupt()?;
         let margins = problem.margin_curve(&arm, &atlas, &draft.limits, &margins());
         let counts = atlas.counts();
-        let (robot, failures) = (&arm.robot, &problem.failures);
-        let dexterity = atlas.dexterity(robot, &draft.limits, failures, DEXTEROUS);
         let map = atlas.share_map(&draft.limits, &problem.failures);
         drop(atlas);
         Ok(Winner {
@@ -219,7 +205,6 @@ impl Run<'_> {
             reach: arm.extent.reach,
             measures,
             margins,
-            dexterity,
             check: self.check(&arm, draft)?,
             sensitivity: self.sensitivity(draft)?,
         })
@@ -279,7 +264,7 @@ impl Run<'_> {
         let robot = &study.design.robot;
         let problem = DesignProblem {
             failures: study.failures.clone(),
-            ..problem.clone()
+            ..problem.with_all_merits()
         };
         let prone = |joint| study.failures.contains(joint);
         let verdict = crate::manifold::Intolerance::of(robot, study.task, prone);

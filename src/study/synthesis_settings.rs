@@ -114,6 +114,8 @@ pub struct SynthesisStudy {
     pub min_fill: f64,
     /// Least W₀ / S_0max.
     pub min_pre_failure_share: f64,
+    /// Least S_F / S_0max.
+    pub min_share: f64,
     /// Lengths of the winner are multiples of this, metres; 0 for no rounding.
     pub round_length: f64,
     /// Limits of the winner are multiples of this, degrees; 0 for no rounding.
@@ -225,10 +227,12 @@ impl SynthesisStudy {
             failures: failures.clone(),
             min_width: self.min_width_deg.to_radians(),
             merit: self.objectives[0],
+            merits: self.objectives.clone(),
             bounds: Bounds {
                 most_length: self.max_length / self.reach,
                 least_fill: self.min_fill,
                 least_pre_failure_share: self.min_pre_failure_share,
+                least_share: self.min_share,
             },
             atlas: AtlasSettings {
                 tolerance: SEARCH_TOLERANCE,

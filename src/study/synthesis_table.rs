@@ -1,6 +1,7 @@
 //! The table `[synthesis]`: read as written, then filled in beside the robot.
 
 use super::file::{MAX_DEGREES, MAX_LENGTH};
+use super::synthesis_objectives;
 use super::synthesis_settings::{
     Effort, Family, ParameterRange, RobotSearch, RowRange, SLICES, SynthesisStudy,
 };
@@ -21,6 +22,7 @@ pub(super) struct SynthesisTable {
     max_length: Option<f64>,
     min_fill: Option<f64>,
     min_pre_failure_share: Option<f64>,
+    min_share: Option<f64>,
     round_length: Option<f64>,
     round_limit_deg: Option<f64>,
     tolerance: Option<f64>,
@@ -49,6 +51,7 @@ const KEYS: &[&str] = &[
     "max_length",
     "min_fill",
     "min_pre_failure_share",
+    "min_share",
     "round_length",
     "round_limit_deg",
     "tolerance",
@@ -103,7 +106,7 @@ pub(super) fn read(root: &Table) -> Option<Item<SynthesisTable>> {
         Some(entry.item(rows.into_iter().collect::<Option<_>>()?))
     });
     let value = SynthesisTable {
-        objectives: read_objectives(&table),
+        objectives: synthesis_objectives::read(&table),
         joints: table.integer("joints", 3..=32),
         method: table.choice(
             "method",
@@ -126,6 +129,7 @@ pub(super) fn read(root: &Table) -> Option<Item<SynthesisTable>> {
         max_length: number("max_length", 1e-3..=MAX_LENGTH, " m"),
         min_fill: share("min_fill"),
         min_pre_failure_share: share("min_pre_failure_share"),
+        min_share: share("min_share"),
         round_length: number("round_length", 0.0..=MAX_LENGTH, " m"),
         round_limit_deg: number("round_limit_deg", 0.0..=30.0, " degrees"),
         tolerance: number("tolerance", 0.0..=MAX_LENGTH, " m"),
@@ -138,14 +142,6 @@ pub(super) fn read(root: &Table) -> Option<Item<SynthesisTable>> {
         value,
         place: root.key_place("synthesis")?,
     })
-}
-
-fn read_objectives(table: &Table) -> Option<Item<Vec<Item<Merit>>>> {
-    let entry = table.entry("objectives")?;
-    let choices = Merit::ALL.map(|merit| (merit.name(), merit));
-    let entries = entry.array("an array of merits, e.g. `[\"share\"]`")?;
-    let read: Vec<_> = entries.iter().map(|e| e.choice(&choices)).collect();
-    Some(entry.item(read.into_iter().collect::<Option<_>>()?))
 }
 
 fn read_effort(table: &Table) -> Effort {
@@ -268,8 +264,12 @@ pub(super) fn settings(
         .joints
         .as_ref()
         .map_or(joints, |item| item.value as usize);
+    let objectives = synthesis_objectives::objectives(table, problems);
     SynthesisStudy {
-        objectives: objectives(table, problems),
+        min_share: table
+            .min_share
+            .unwrap_or_else(|| synthesis_objectives::least_share(&objectives)),
+        objectives,
         method: table
             .method
             .as_ref()
@@ -290,26 +290,6 @@ pub(super) fn settings(
         effort: table.effort,
         links: rows(table, family, joints, reach, problems),
     }
-}
-
-fn objectives(table: &SynthesisTable, problems: &Problems) -> Vec<Merit> {
-    let Some(item) = &table.objectives else {
-        return vec![Merit::Share];
-    };
-    let mut merits: Vec<Merit> = Vec::new();
-    if item.value.is_empty() {
-        let (expected, help) = ("at least one merit", "write `objectives = [\"share\"]`");
-        problems.reject(&item.place, "there is no objective", expected, help);
-        return vec![Merit::Share];
-    }
-    for merit in &item.value {
-        if merits.contains(&merit.value) {
-            let (expected, help) = ("each merit once", "remove one of the two");
-            problems.reject(&merit.place, "a merit is listed twice", expected, help);
-        }
-        merits.push(merit.value);
-    }
-    merits
 }
 
 fn rows(
@@ -406,6 +386,7 @@ impl Default for SynthesisTable {
             max_length: None,
             min_fill: None,
             min_pre_failure_share: None,
+            min_share: None,
             round_length: None,
             round_limit_deg: None,
             tolerance: None,

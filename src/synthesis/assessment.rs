@@ -27,6 +27,8 @@ pub struct Bounds {
     pub least_fill: f64,
     /// Least W₀ / S_0max.
     pub least_pre_failure_share: f64,
+    /// Least S_F / S_0max.
+    pub least_share: f64,
 }
 
 /// The question that a search for robots answers.
@@ -40,6 +42,8 @@ pub struct DesignProblem {
     pub min_width: f64,
     /// What is made as large as possible.
     pub merit: Merit,
+    /// Everything searched for or reported: of these, merits that cost more than sizes are measured.
+    pub merits: Vec<Merit>,
     /// What a robot must keep to.
     pub bounds: Bounds,
     /// How manifolds are traced.
@@ -178,7 +182,8 @@ impl DesignProblem {
         };
         let atlas = self.atlas_with(settings, &arm, look, None)?;
         let limits = self.fit(&arm, &atlas, starts, care, look.seed);
-        Some(self.draft_of(links, &arm, &atlas, limits))
+        let draft = self.draft_of(links, &arm, &atlas, limits);
+        Some(self.with_margin_apart(draft, look))
     }
 
     /// `links` with given limits, measured on fresh samples.
@@ -368,10 +373,12 @@ impl DesignProblem {
         all
     }
 
-    /// All merits of `arm` with `limits` over `atlas`.
+    /// The merits of `arm` with `limits` over `atlas`.
     pub fn measures(&self, arm: &Arm, atlas: &Atlas, limits: &ArtificialLimits) -> Measures {
         let sizes = atlas.sizes(limits, &self.failures, Rule::Definition);
-        Measures::new(&sizes, arm.length, arm.extent.reach, self.task())
+        let mut measures = Measures::new(&sizes, arm.length, arm.extent.reach, self.task());
+        self.measure_beyond_size(&mut measures, arm, atlas, limits);
+        measures
     }
 
     /// The merit searched for, lowered for every bound that is missed.
@@ -387,6 +394,7 @@ impl DesignProblem {
         };
         let bounds = &self.bounds;
         short(measures.fill.value, bounds.least_fill)
+            * short(measures.share.value, bounds.least_share)
             * short(
                 measures.pre_failure_share.value,
                 bounds.least_pre_failure_share,

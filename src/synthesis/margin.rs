@@ -2,7 +2,8 @@
 
 use super::arm::Arm;
 use super::assessment::DesignProblem;
-use crate::workspace::hybrid::Atlas;
+use super::measures::Measures;
+use crate::workspace::hybrid::{Atlas, Rule};
 use crate::workspace::{ArtificialLimits, Estimate};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::FRAC_PI_6;
@@ -16,21 +17,17 @@ pub struct AtMargin {
     pub share: Estimate,
 }
 
-/// The share for several margins, and the one that costs a tenth of it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct MarginCurve {
-    /// In the order asked for.
-    pub points: Vec<AtMargin>,
-    /// The margin at which the share has dropped by 10 % of its value without one, radians;
-    /// `None` if it lies beyond [`WIDEST`] or there is nothing to lose.
-    pub ten_percent: Option<f64>,
-}
-
 /// Widest margin that is looked at, radians.
-pub const WIDEST: f64 = FRAC_PI_6;
+pub const WIDEST_MARGIN: f64 = FRAC_PI_6;
+
+/// What is left of S_F at the margin that a robot is rated by.
+const LEFT: f64 = 0.9;
 
 /// Halvings of the interval in which the tenth is lost: to 0.01°.
 const HALVINGS: usize = 12;
+
+/// Half the interval over which the slope of S_F is taken, radians.
+const SLOPE: f64 = 0.01;
 
 impl DesignProblem {
     /// The share of `arm` over `atlas` for several margins (radians) instead of the problem's own.
@@ -40,32 +37,51 @@ impl DesignProblem {
         atlas: &Atlas,
         limits: &ArtificialLimits,
         margins: &[f64],
-    ) -> MarginCurve {
-        let share = |margin: f64| {
-            let problem = DesignProblem {
-                failures: self.failures.clone().with_margin(margin),
-                ..self.clone()
-            };
-            problem.measures(arm, atlas, limits).share
+    ) -> Vec<AtMargin> {
+        let at = |&margin: &f64| {
+            let failures = self.failures.clone().with_margin(margin);
+            let sizes = atlas.sizes(limits, &failures, Rule::Definition);
+            let (reach, task) = (arm.extent.reach, self.task());
+            AtMargin {
+                margin,
+                share: Measures::new(&sizes, arm.length, reach, task).share,
+            }
         };
-        let points = margins.iter().map(|&margin| AtMargin {
-            margin,
-            share: share(margin),
-        });
-        let wanted = 0.9 * share(0.0).value;
-        let (mut low, mut high) = (0.0, WIDEST);
-        let exists = wanted > 0.0 && share(high).value < wanted;
-        for _ in 0..if exists { HALVINGS } else { 0 } {
+        margins.iter().map(at).collect()
+    }
+
+    /// The margin at which a tenth of the S_F without one is lost, radians, on the samples of
+    /// `atlas`: 0 where there is nothing to lose, [`WIDEST_MARGIN`] where it lies beyond.
+    pub fn margin(&self, atlas: &Atlas, limits: &ArtificialLimits) -> Estimate {
+        let at = |margin: f64| self.failures.clone().with_margin(margin);
+        let size = |margin: f64| atlas.fault_tolerant_size(limits, &at(margin));
+        let wanted = LEFT * size(0.0);
+        let exactly = |value| Estimate { value, error: 0.0 };
+        if wanted <= 0.0 {
+            return exactly(0.0);
+        }
+        if size(WIDEST_MARGIN) >= wanted {
+            return exactly(WIDEST_MARGIN);
+        }
+        let (mut low, mut high) = (0.0, WIDEST_MARGIN);
+        for _ in 0..HALVINGS {
             let middle = 0.5 * (low + high);
-            if share(middle).value < wanted {
-                high = middle;
-            } else {
-                low = middle;
+            match size(middle) < wanted {
+                true => high = middle,
+                false => low = middle,
             }
         }
-        MarginCurve {
-            points: points.collect(),
-            ten_percent: exists.then_some(0.5 * (low + high)),
+        let margin = 0.5 * (low + high);
+        // The same samples are lost and kept: what is uncertain is their difference.
+        let off = atlas.fault_tolerant_difference(limits, [&at(0.0), &at(margin)], [LEFT, 1.0]);
+        let [from, to] = [(margin - SLOPE).max(0.0), margin + SLOPE];
+        let slope = (size(from) - size(to)) / (to - from);
+        Estimate {
+            value: margin,
+            error: match slope > 0.0 {
+                true => (off.error / slope).min(WIDEST_MARGIN),
+                false => WIDEST_MARGIN,
+            },
         }
     }
 }

@@ -1,6 +1,7 @@
 //! What a robot with its limits is worth, in numbers that do not depend on its size.
 
 use crate::design::TaskSpace;
+use crate::workspace::hybrid::Dexterity;
 use crate::workspace::{Estimate, WorkspaceSizes};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
@@ -24,17 +25,27 @@ pub enum Merit {
     Survival,
     /// R / L: how straight the arm is; the inverse of the total length in reaches.
     Slenderness,
+    /// Mean over W_F of the greatest 1/cond J that the limits allow: how far from singular.
+    Condition,
+    /// Mean over W_F of the greatest min_j |n_j| that the limits allow, n the unit null vector: how
+    /// much is left when the worst joint locks.
+    NullComponent,
+    /// How far joints may overshoot their limits, radians, until a tenth of S_F is lost.
+    Margin,
 }
 
 impl Merit {
     /// All of them, in the order of reports.
-    pub const ALL: [Merit; 6] = [
+    pub const ALL: [Merit; 9] = [
         Merit::Share,
         Merit::BallShare,
         Merit::SizePerLength,
         Merit::PreFailureShare,
         Merit::Survival,
         Merit::Slenderness,
+        Merit::Condition,
+        Merit::NullComponent,
+        Merit::Margin,
     ];
 
     /// The name used in files.
@@ -46,7 +57,26 @@ impl Merit {
             Merit::PreFailureShare => "pre-failure-share",
             Merit::Survival => "survival",
             Merit::Slenderness => "slenderness",
+            Merit::Condition => "condition",
+            Merit::NullComponent => "null-component",
+            Merit::Margin => "margin",
         }
+    }
+
+    /// Whether it grows with W_F itself.
+    pub fn rewards_size(self) -> bool {
+        matches!(self, Merit::Share | Merit::BallShare | Merit::SizePerLength)
+    }
+
+    /// Whether it tells how W_F is, however small W_F may be: searched for alone it would find
+    /// robots of which next to nothing survives.
+    pub fn is_blind_to_size(self) -> bool {
+        self.needs_configurations() || self == Merit::Margin
+    }
+
+    /// Whether it is measured along self-motion manifolds.
+    pub fn needs_configurations(self) -> bool {
+        matches!(self, Merit::Condition | Merit::NullComponent)
     }
 }
 
@@ -73,10 +103,15 @@ pub struct Measures {
     pub fill: Estimate,
     /// L / R.
     pub length: f64,
+    /// How far from singular the robot is inside W_F; `None` if it was not asked for, if W_F is
+    /// empty or with more than one degree of redundancy.
+    pub dexterity: Option<Dexterity>,
+    /// The overshoot that costs a tenth of S_F, radians; `None` if it was not asked for.
+    pub margin: Option<Estimate>,
 }
 
 impl Measures {
-    /// From the sizes of workspaces of a robot of total length `length` and reach `reach`, in
+    /// What the sizes of workspaces tell of a robot of total length `length` and reach `reach`, in
     /// metres.
     pub fn new(sizes: &WorkspaceSizes, length: f64, reach: f64, task: TaskSpace) -> Measures {
         let dimension = if task.is_planar() { 2 } else { 3 };
@@ -91,10 +126,12 @@ impl Measures {
             survival: ratio(tolerant, sizes.pre_failure),
             fill: over(sizes.unrestricted, ball),
             length: length / reach,
+            dexterity: None,
+            margin: None,
         }
     }
 
-    /// One of the merits; the larger the better.
+    /// One of the merits; the larger the better, 0 for one that was not measured.
     pub fn merit(&self, merit: Merit) -> Estimate {
         match merit {
             Merit::Share => self.share,
@@ -110,6 +147,21 @@ impl Measures {
                 },
                 error: 0.0,
             },
+            Merit::Condition => {
+                let dexterity = self.dexterity.map(|d| d.inverse_condition);
+                dexterity.unwrap_or_default()
+            }
+            Merit::NullComponent => self.dexterity.map(|d| d.null_component).unwrap_or_default(),
+            Merit::Margin => self.margin.unwrap_or_default(),
+        }
+    }
+
+    /// Whether a merit was measured.
+    pub fn has(&self, merit: Merit) -> bool {
+        match merit {
+            Merit::Condition | Merit::NullComponent => self.dexterity.is_some(),
+            Merit::Margin => self.margin.is_some(),
+            _ => true,
         }
     }
 }

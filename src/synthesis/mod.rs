@@ -8,10 +8,12 @@
 
 mod arm;
 mod assessment;
+mod beyond_size;
 mod finalists;
 mod link_space;
 mod margin;
 mod measures;
+mod off_reach;
 mod pareto;
 mod run;
 mod search;
@@ -21,9 +23,10 @@ mod stages;
 
 pub use arm::Arm;
 pub use assessment::{Bounds, Care, DesignProblem, Draft, Look};
+pub use beyond_size::MARGIN_SAMPLES;
 pub use finalists::{Finalist, REPLICATES};
 pub use link_space::{Column, Constants, LinkRow, LinkSpace, Links, Parameter, total_length};
-pub use margin::{AtMargin, MarginCurve};
+pub use margin::{AtMargin, WIDEST_MARGIN};
 pub use measures::{Measures, Merit};
 pub use pareto::{FrontRobot, ParetoSearch, ParetoSettings, merit_values};
 pub use run::{Generation, Stage};

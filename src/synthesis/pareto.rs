@@ -1,7 +1,7 @@
 //! Robots between which only the user can choose: NSGA-II over links and limits together.
 //!
 //! Links vary by blending and Gaussian steps; limits come from the better parent and are refitted
-//! for S_F, widened for more use before a failure, or moved at random. Samples are renewed every
+//! for S_F, widened for more use before a failure (narrowed for more margin), or moved at random. Samples are renewed every
 //! few generations and the population measured again, so that nobody lives on luck.
 
 use super::assessment::{Care, DesignProblem, Draft, Look};
@@ -57,7 +57,17 @@ pub struct ParetoSearch {
     front: Vec<FrontRobot>,
     measured: usize,
     evaluations: u64,
+    /// Robots left out because the bounds keep them from the reach.
+    off_reach: u64,
     starts: Vec<Links>,
+}
+
+/// Why a new robot has no draft.
+enum LeftOut {
+    /// The bounds keep it from the reach.
+    OffReach,
+    /// It has no workspace to speak of.
+    Nothing,
 }
 
 /// Random robots of one step.
@@ -70,6 +80,8 @@ const STEP: f64 = 0.06;
 const MUTATED: f64 = 0.35;
 /// Largest turn of one end of limits that is moved at random, radians.
 const TURN: f64 = 0.4;
+/// How much wider limits may become at once, as a share.
+const WIDENED: f64 = 0.5;
 /// Robots of the front that are measured in one step.
 const REPORTED: usize = 4;
 
@@ -92,6 +104,7 @@ impl ParetoSearch {
             front: Vec::new(),
             measured: 0,
             evaluations: 0,
+            off_reach: 0,
             starts,
         }
     }
@@ -139,11 +152,11 @@ impl ParetoSearch {
         front
     }
 
-    /// The best of the population by the first merit on held-out samples, at most `count`.
-    pub fn leaders(&self, count: usize) -> Vec<Draft> {
-        let first = |robot: &FrontRobot| merit_values(&robot.held_out, &self.merits)[0];
+    /// The best of the population by the score of `problem` on held-out samples, at most `count`.
+    pub fn leaders(&self, problem: &DesignProblem, count: usize) -> Vec<Draft> {
+        let score = |robot: &FrontRobot| problem.score(&robot.held_out);
         let mut robots: Vec<&FrontRobot> = self.front.iter().collect();
-        robots.sort_by(|a, b| first(b).total_cmp(&first(a)));
+        robots.sort_by(|a, b| score(b).total_cmp(&score(a)));
         let leaders = robots.into_iter().take(count);
         leaders.map(|robot| robot.draft.clone()).collect()
     }
@@ -156,6 +169,11 @@ impl ParetoSearch {
     /// Robots assessed so far.
     pub fn evaluations(&self) -> u64 {
         self.evaluations
+    }
+
+    /// Robots left out because the bounds keep them from the reach.
+    pub fn off_reach(&self) -> u64 {
+        self.off_reach
     }
 
     fn look(&self) -> Look {
@@ -174,19 +192,22 @@ impl ParetoSearch {
         let draft = |number: u32| {
             let links = match self.starts.get(number as usize) {
                 Some(links) => links.clone(),
-                None => {
-                    let seed = sample_seed(self.seed, Purpose::Robot, u64::from(number));
-                    problem.links.random(&mut stream(seed, 0))
-                }
+                None => problem.links.numbered(self.seed, number),
             };
+            if !problem.links.has_reach(&links) {
+                return Err(LeftOut::OffReach);
+            }
             match problem.verdict(&links) {
-                Some(_) => None,
-                None => problem.draft(&links, &[], look, Care::Scratch),
+                Some(_) => Err(LeftOut::Nothing),
+                None => {
+                    let draft = problem.draft(&links, &[], look, Care::Scratch);
+                    draft.ok_or(LeftOut::Nothing)
+                }
             }
         };
-        let drafts: Vec<Option<Draft>> = numbers.clone().into_par_iter().map(draft).collect();
-        self.evaluations += drafts.len() as u64;
-        self.add(problem, drafts.into_iter().flatten().collect());
+        let looked: Vec<Result<Draft, LeftOut>> =
+            numbers.clone().into_par_iter().map(draft).collect();
+        self.take(problem, looked);
         self.screened = numbers.end;
     }
 
@@ -213,7 +234,7 @@ impl ParetoSearch {
     fn breed(&mut self, problem: &DesignProblem) {
         let look = self.look();
         if self.generation.is_multiple_of(RENEWED) {
-            let again = |draft: &Draft| problem.measured(&draft.links, &draft.limits, look);
+            let again = |draft: &Draft| problem.measured_apart(&draft.links, &draft.limits, look);
             let renewed: Vec<Draft> = self.population.par_iter().filter_map(again).collect();
             self.evaluations += self.population.len() as u64;
             self.population = renewed;
@@ -242,10 +263,24 @@ impl ParetoSearch {
             return;
         }
         let numbers = 0..self.settings.population;
-        let children: Vec<Option<Draft>> = numbers.into_par_iter().map(child).collect();
-        self.evaluations += children.len() as u64;
-        self.add(problem, children.into_iter().flatten().collect());
+        let children: Vec<Result<Draft, LeftOut>> = numbers.into_par_iter().map(child).collect();
+        self.take(problem, children);
         self.generation += 1;
+    }
+
+    /// Counts new robots and joins them to the population.
+    fn take(&mut self, problem: &DesignProblem, looked: Vec<Result<Draft, LeftOut>>) {
+        self.evaluations += looked.len() as u64;
+        let drafts = looked.into_iter().filter_map(|looked| match looked {
+            Ok(draft) => Some(draft),
+            Err(LeftOut::Nothing) => None,
+            Err(LeftOut::OffReach) => {
+                self.off_reach += 1;
+                None
+            }
+        });
+        let drafts = drafts.collect();
+        self.add(problem, drafts);
     }
 
     fn child(
@@ -255,25 +290,29 @@ impl ParetoSearch {
         b: &Draft,
         look: Look,
         rng: &mut ChaCha8Rng,
-    ) -> Option<Draft> {
+    ) -> Result<Draft, LeftOut> {
         let links = vary(problem, &a.links, &b.links, rng);
-        if (problem.links.reach(&links) - 1.0).abs() > 0.01 {
-            return None;
+        if !problem.links.has_reach(&links) {
+            return Err(LeftOut::OffReach);
         }
         let action: f64 = rng.random();
         let limits = match action {
             x if x < 0.5 => {
                 let starts = [a.limits.clone()];
-                return problem.draft(&links, &starts, look, Care::Refit);
+                let draft = problem.draft(&links, &starts, look, Care::Refit);
+                return draft.ok_or(LeftOut::Nothing);
             }
-            x if x < 0.75 => widened(
-                &a.limits,
-                1.0 + 0.5 * rng.random::<f64>(),
-                problem.min_width,
-            ),
+            x if x < 0.75 => {
+                let wider = 1.0 + WIDENED * rng.random::<f64>();
+                // Narrower limits leave a wider margin.
+                let is_narrowed = self.merits.contains(&Merit::Margin) && rng.random::<bool>();
+                let factor = if is_narrowed { 1.0 / wider } else { wider };
+                widened(&a.limits, factor, problem.min_width)
+            }
             _ => moved(&a.limits, problem.min_width, rng),
         };
-        problem.measured(&links, &limits, look)
+        let draft = problem.measured_apart(&links, &limits, look);
+        draft.ok_or(LeftOut::Nothing)
     }
 
     /// Measures a few robots of the last population on samples of their own.
@@ -284,6 +323,11 @@ impl ParetoSearch {
             replicates: REPLICATES,
         };
         let end = (self.measured + REPORTED).min(self.population.len());
+        // Only a front is reported from here.
+        let problem = match self.merits.len() {
+            1 => problem.clone(),
+            _ => problem.with_all_merits(),
+        };
         for draft in &self.population[self.measured..end] {
             if let Some(again) = problem.measured(&draft.links, &draft.limits, look) {
                 self.front.push(FrontRobot {

@@ -23,6 +23,8 @@ pub enum Purpose {
     Check,
     /// Sensitivity to tolerances.
     Sensitivity,
+    /// The margin of limits that were fitted to other task points.
+    Margin,
 }
 
 /// The seed of the samples for `purpose` number `number` in a search with the given seed.

@@ -16,9 +16,10 @@ use crate::kinematics::{Chain, Differential, workspace_extent};
 use crate::workspace::{ArtificialLimits, Estimate, FailureSet};
 use nalgebra::Isometry3;
 use rayon::prelude::*;
+use serde::{Deserialize, Serialize};
 
 /// Means over W_F of the best that any configuration inside the limits offers.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Dexterity {
     /// Fault-tolerant samples they rest on.
     pub poses: u64,

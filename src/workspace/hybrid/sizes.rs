@@ -75,6 +75,33 @@ impl Atlas {
         }
     }
 
+    /// a · S_F for the first failure set less b · S_F for the second, [a, b] = `factors`. Both see the
+    /// same samples, so that the difference is known far better than either.
+    pub fn fault_tolerant_difference(
+        &self,
+        limits: &ArtificialLimits,
+        failures: [&FailureSet; 2],
+        factors: [f64; 2],
+    ) -> Estimate {
+        let both = failures.map(|failures| self.limits(limits, failures, Rule::Definition));
+        let mut sums = vec![[0.0; 2]; self.plan().strata() as usize];
+        let parts = self.views().map(|view| {
+            let poses = view.poses.iter().enumerate();
+            let part = poses.map(|(index, pose)| {
+                let [a, b] = both.each_ref().map(|limits| limits.measure(&view, index));
+                let y = pose.weight * (factors[0] * a - factors[1] * b);
+                (pose.stratum as usize, y)
+            });
+            part.collect::<Vec<(usize, f64)>>()
+        });
+        let parts: Vec<_> = parts.collect();
+        for (stratum, y) in parts.into_iter().flatten() {
+            sums[stratum][0] += y;
+            sums[stratum][1] += y * y;
+        }
+        self.estimate(&sums)
+    }
+
     /// Value and standard error from the sums of every stratum.
     fn estimate(&self, strata: &[[f64; 2]]) -> Estimate {
         let value: f64 = strata.iter().map(|sum| sum[0]).sum();

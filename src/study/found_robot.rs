@@ -1,0 +1,65 @@
+//! Files of a robot that a search has found: to be used elsewhere, and to be measured anew.
+
+use super::settings::{DegreeLimits, Study};
+use crate::design::{Robot, robot_to_toml, robot_to_urdf};
+use crate::workspace::{ArtificialLimits, FailureSet};
+
+/// Who found it.
+pub(super) fn source(study: &Study) -> String {
+    format!(
+        "found by faultspace {} from the study {}, seed {}",
+        env!("CARGO_PKG_VERSION"),
+        study.name,
+        study.seed
+    )
+}
+
+/// The robot file and the URDF file of `robot`, named after it, with its limits in a comment.
+pub(super) fn robot_files(robot: &Robot, limits: &ArtificialLimits) -> Vec<(String, String)> {
+    let written = DegreeLimits::from_limits(limits, robot);
+    let comments = [
+        format!(
+            "Lower limits before a failure (deg): {:.4?}",
+            written.lower_deg
+        ),
+        format!(
+            "Upper limits before a failure (deg): {:.4?}",
+            written.upper_deg
+        ),
+    ];
+    let name = &robot.name;
+    let mut files = Vec::new();
+    if let Ok(text) = robot_to_toml(robot, &comments) {
+        files.push((format!("{name}.toml"), text));
+    }
+    files.push((format!("{name}.urdf"), robot_to_urdf(robot)));
+    files
+}
+
+/// A study that measures the robot of `robot.toml` anew, by the estimator of this name.
+pub(super) fn robot_study(
+    study: &Study,
+    robot: &Robot,
+    limits: &ArtificialLimits,
+    failures: &FailureSet,
+    estimator: &str,
+) -> (String, String) {
+    let limits = DegreeLimits::from_limits(limits, robot);
+    let numbers: Vec<usize> = failures.numbers().collect();
+    let failures = match numbers.len() == robot.joints() {
+        true => "\"any\"".into(),
+        false => format!("{numbers:?}"),
+    };
+    let samples = match estimator {
+        "exact" => "",
+        _ => ", on other samples",
+    };
+    let text = format!(
+        "# Measures the robot found anew{samples}.\nkind = \"estimate\"\ndesign = \
+         \"robot.toml\"\nseed = 2\n\n[task]\nspace = \"{}\"\nfailures = {failures}\nmargin_deg = \
+         {}\n\n[limits]\nlower_deg = {:?}\nupper_deg = {:?}\n\n[estimator]\nmethod = \
+         \"{estimator}\"\n",
+        study.task, study.margin_deg, limits.lower_deg, limits.upper_deg
+    );
+    ("robot_study.toml".into(), text)
+}
