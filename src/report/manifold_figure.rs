@@ -85,7 +85,7 @@ impl Figure for ManifoldFigure<'_> {
         if self.are_slices {
             return format!(
                 "Curves on the surface of all configurations that hold the pose, along which some \
-                 joints stand still (not its outline): the angle of every joint against that of \
+                 joints stand still (not its outline; of many, a selection): the angle of every joint against that of \
                  joint 1, and below the range of every joint over the whole surface.{limits}"
             );
         }
