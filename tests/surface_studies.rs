@@ -133,8 +133,8 @@ fn physical_limits_of_joint_1_are_part_of_the_verdict() {
              lower_deg = [{lower}, -180, -180]\nupper_deg = [{upper}, 180, 180]",
             "{ kind = \"revolute\", a = 1 }, ".repeat(3)
         ));
-        let limits = "[limits]\nlower_deg = [-30, 30, -60]\nupper_deg = [30, 60, -20]\n";
-        let pose = "failures = [2]\n[pose]\nposition = [2.4, 0.2]\n[report]\nfigures = false\n";
+        let limits = "[limits]\nlower_deg = [-30, -60, 20]\nupper_deg = [30, 70, 40]\n";
+        let pose = "failures = [2]\n[pose]\nposition = [2.394, 0]\n[report]\nfigures = false\n";
         let result = place.result(&format!("{POSE}{pose}{limits}"), "out");
         let arcs = result["rotation_set_deg"].as_array().unwrap().clone();
         arcs.iter()
