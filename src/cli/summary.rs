@@ -81,18 +81,31 @@ fn pose(result: &Value, text: &mut String) {
         .iter()
         .filter_map(|manifold| manifold["length"].as_f64());
     let lengths: Vec<String> = lengths.map(|length| format!("{length:.3}")).collect();
-    line("self-motion manifolds", manifolds.len().to_string());
+    // Of a surface there are slices, and no count of its parts.
+    match result["slices"]["curves"].as_u64() {
+        Some(curves) => {
+            let dimension = result["degree_of_redundancy"].as_u64().unwrap_or(2);
+            let slices = result["slices"]["with_curves"].as_u64().unwrap_or(0);
+            line("surface of dimension", dimension.to_string());
+            line("curves on slices", format!("{curves} on {slices}"));
+        }
+        None => line("self-motion manifolds", manifolds.len().to_string()),
+    }
     if !lengths.is_empty() {
         line("lengths", format!("{} rad", lengths.join(", ")));
     }
     let completeness = &result["completeness"];
     let missed = completeness["missed"].as_f64();
+    let share = completeness["missed_share"].as_f64();
     let kind = completeness["kind"].as_str().unwrap_or("?");
     line(
         "completeness",
-        match missed {
-            Some(missed) => format!("{kind}, a manifold is missing with probability {missed:.1e}"),
-            None => kind.to_owned(),
+        match (missed, share) {
+            (Some(missed), _) => {
+                format!("{kind}, a manifold is missing with probability {missed:.1e}")
+            }
+            (_, Some(share)) => format!("{kind}, at most {:.1} % missing (95 %)", 100.0 * share),
+            _ => kind.to_owned(),
         },
     );
     if let Some(answer) = result["fault_tolerant"].as_bool() {
@@ -213,6 +226,20 @@ mod tests {
         for part in ["manifolds     2", "9.100, 26.000 rad", "1.5e-2", "yes"] {
             assert!(text.contains(part), "{part} is not in\n{text}");
         }
+    }
+
+    #[test]
+    fn surfaces_are_not_counted() {
+        let result = json!({
+            "study": "m", "kind": "manifolds", "status": "done", "degree_of_redundancy": 2,
+            "manifolds": [], "slices": { "curves": 41, "with_curves": 20 },
+            "completeness": { "kind": "sampled", "missed_share": 0.0125 },
+        });
+        let text = summary(&result, Path::new("x"));
+        for part in ["dimension      2", "41 on 20", "at most 1.2 % missing"] {
+            assert!(text.contains(part), "{part} is not in\n{text}");
+        }
+        assert!(!text.contains("manifolds     0"), "{text}");
     }
 
     #[test]

@@ -2,6 +2,7 @@
 //! [S4 eq. 18].
 
 use super::seeds::{Seed, Seeder};
+use super::summit::to_summit;
 use crate::angle::wrap;
 use crate::design::TaskSpace;
 use crate::kinematics::{Chain, Goal, Kernel, Lanes, damped_step, dot};
@@ -12,6 +13,12 @@ use rand_chacha::ChaCha8Rng;
 const LEVEL: f64 = 0.02;
 /// Most steps of a walk.
 const MOST_STEPS: usize = 60;
+/// The same two for walks on the pre-image of a single task point, which may take their time.
+const FLAT: f64 = 1e-4;
+const MANY_STEPS: usize = 300;
+/// Longest step of a walk, radians; shorter where it must not cut corners.
+const LONGEST: f64 = 0.4;
+const CAREFUL: f64 = 0.1;
 /// Damping of corrections, far below the square of any regular singular value.
 const DAMPING: f64 = 1e-10;
 
@@ -52,6 +59,45 @@ impl Ascent {
         }
     }
 
+    /// The configurations in which at least `starts` random starts land on the task.
+    pub fn landings(&self, goal: &Goal<f64>, starts: usize, rng: &mut ChaCha8Rng) -> Vec<Vec<f64>> {
+        match self {
+            Ascent::Two4(kernel) => landings(kernel, goal, starts, rng),
+            Ascent::Two5(kernel) => landings(kernel, goal, starts, rng),
+            Ascent::Three5(kernel) => landings(kernel, goal, starts, rng),
+            Ascent::Three6(kernel) => landings(kernel, goal, starts, rng),
+            Ascent::Six8(kernel) => landings(kernel, goal, starts, rng),
+            Ascent::Six9(kernel) => landings(kernel, goal, starts, rng),
+        }
+    }
+
+    /// As [`Ascent::extremum`], but a walk that takes all the steps it needs and never leaves the
+    /// configurations at which `inside` holds.
+    pub fn extremum_inside(
+        &self,
+        goal: &Goal<f64>,
+        start: &[f64],
+        (joint, sign): (usize, f64),
+        inside: &dyn Fn(&[f64]) -> bool,
+    ) -> Option<Vec<f64>> {
+        let aim = Aim {
+            joint,
+            sign,
+            level: FLAT,
+            most_steps: MANY_STEPS,
+            longest: CAREFUL,
+            inside,
+        };
+        match self {
+            Ascent::Two4(kernel) => climb(kernel, goal, start, &aim),
+            Ascent::Two5(kernel) => climb(kernel, goal, start, &aim),
+            Ascent::Three5(kernel) => climb(kernel, goal, start, &aim),
+            Ascent::Three6(kernel) => climb(kernel, goal, start, &aim),
+            Ascent::Six8(kernel) => climb(kernel, goal, start, &aim),
+            Ascent::Six9(kernel) => climb(kernel, goal, start, &aim),
+        }
+    }
+
     /// The configuration at the end of a walk from `start` that raises (`sign` = 1) or lowers (−1)
     /// `joint` (from 0); `None` if `start` does not lie on the pre-image.
     pub fn extremum(
@@ -61,13 +107,21 @@ impl Ascent {
         joint: usize,
         sign: f64,
     ) -> Option<Vec<f64>> {
+        let aim = Aim {
+            joint,
+            sign,
+            level: LEVEL,
+            most_steps: MOST_STEPS,
+            longest: LONGEST,
+            inside: &|_| true,
+        };
         match self {
-            Ascent::Two4(kernel) => walk(kernel, goal, start, joint, sign),
-            Ascent::Two5(kernel) => walk(kernel, goal, start, joint, sign),
-            Ascent::Three5(kernel) => walk(kernel, goal, start, joint, sign),
-            Ascent::Three6(kernel) => walk(kernel, goal, start, joint, sign),
-            Ascent::Six8(kernel) => walk(kernel, goal, start, joint, sign),
-            Ascent::Six9(kernel) => walk(kernel, goal, start, joint, sign),
+            Ascent::Two4(kernel) => walk(kernel, goal, start, &aim),
+            Ascent::Two5(kernel) => walk(kernel, goal, start, &aim),
+            Ascent::Three5(kernel) => walk(kernel, goal, start, &aim),
+            Ascent::Three6(kernel) => walk(kernel, goal, start, &aim),
+            Ascent::Six8(kernel) => walk(kernel, goal, start, &aim),
+            Ascent::Six9(kernel) => walk(kernel, goal, start, &aim),
         }
     }
 }
@@ -91,26 +145,71 @@ fn land<const N: usize, const M: usize>(
     landed
 }
 
+fn landings<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    starts: usize,
+    rng: &mut ChaCha8Rng,
+) -> Vec<Vec<f64>> {
+    let lanes: Goal<Lanes> = goal.splat();
+    let mut seeder = Seeder::new(kernel, rng);
+    let mut landed = Vec::new();
+    while seeder.tried < starts {
+        seeder.next(kernel, &lanes, rng, |seed| {
+            if let Seed::Found(point) = seed {
+                landed.push(point.map(wrap).to_vec());
+            }
+        });
+    }
+    landed
+}
+
+/// Where a walk goes and when it ends.
+pub(super) struct Aim<'a> {
+    pub joint: usize,
+    pub sign: f64,
+    /// Slope of the joint's angle at which it ends.
+    level: f64,
+    most_steps: usize,
+    /// Longest step, radians.
+    longest: f64,
+    /// Where it may go.
+    pub inside: &'a dyn Fn(&[f64]) -> bool,
+}
+
+/// A walk, and Newton steps at its end: on a ridge steps uphill go from side to side.
+fn climb<const N: usize, const M: usize>(
+    kernel: &Kernel<N, M>,
+    goal: &Goal<f64>,
+    start: &[f64],
+    aim: &Aim<'_>,
+) -> Option<Vec<f64>> {
+    let end: [f64; N] = walk(kernel, goal, start, aim)?.try_into().ok()?;
+    Some(to_summit(kernel, goal, end, aim).to_vec())
+}
+
 fn walk<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
     start: &[f64],
-    joint: usize,
-    sign: f64,
+    aim: &Aim<'_>,
 ) -> Option<Vec<f64>> {
+    let (joint, sign) = (aim.joint, aim.sign);
     let start: [f64; N] = start.try_into().ok()?;
     let mut point = settle(kernel, goal, start)?;
     let mut step: f64 = 0.1;
-    for _ in 0..MOST_STEPS {
+    for _ in 0..aim.most_steps {
         let slope = uphill(kernel, goal, &point, joint, sign);
         let norm = dot(&slope, &slope).sqrt();
         // More than a turn away from the start the joint's range is full anyway.
-        if norm < LEVEL || (point[joint] - start[joint]).abs() > std::f64::consts::TAU {
+        if norm < aim.level || (point[joint] - start[joint]).abs() > std::f64::consts::TAU {
             break;
         }
         let guess: [f64; N] = std::array::from_fn(|k| point[k] + step * slope[k] / norm);
         let next = settle(kernel, goal, guess);
-        match next.filter(|next| sign * (next[joint] - point[joint]) > 0.0) {
+        let rises =
+            |next: &[f64; N]| sign * (next[joint] - point[joint]) > 0.0 && (aim.inside)(next);
+        match next.filter(rises) {
             Some(next) => {
                 // Ahead of the extremum the slope changes little; past it, it turns round.
                 let ahead = uphill(kernel, goal, &next, joint, sign);
@@ -118,7 +217,7 @@ fn walk<const N: usize, const M: usize>(
                 step = if falls {
                     0.5 * step
                 } else {
-                    (1.6 * step).min(0.4)
+                    (1.6 * step).min(aim.longest)
                 };
                 point = next;
             }
@@ -132,7 +231,7 @@ fn walk<const N: usize, const M: usize>(
 }
 
 /// The projection of ± the joint's axis onto the null space of J.
-fn uphill<const N: usize, const M: usize>(
+pub(super) fn uphill<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
     point: &[f64; N],
@@ -148,7 +247,7 @@ fn uphill<const N: usize, const M: usize>(
 }
 
 /// Newton steps onto the pre-image; `None` if they lead away.
-fn settle<const N: usize, const M: usize>(
+pub(super) fn settle<const N: usize, const M: usize>(
     kernel: &Kernel<N, M>,
     goal: &Goal<f64>,
     guess: [f64; N],

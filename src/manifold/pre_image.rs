@@ -71,6 +71,9 @@ pub enum ManifoldError {
         /// Task dimension m.
         dimension: usize,
     },
+    /// Joint 1 slides, and task points are to be turned about its axis.
+    #[error("joint 1 slides: no turn about its axis leaves the self-motion as it is")]
+    NoSymmetry,
     /// A prismatic joint has no physical limits.
     #[error("a prismatic joint without physical limits: its self-motion would have no end")]
     Unlimited,
@@ -82,7 +85,6 @@ pub struct PreImageSearch {
     chain: Chain,
     task: TaskSpace,
     solver: AnySolver,
-    reach: f64,
     settings: SearchSettings,
 }
 
@@ -125,7 +127,6 @@ impl PreImageSearch {
             });
         }
         Ok(PreImageSearch {
-            reach: reach(&chain),
             chain,
             task,
             solver,
@@ -189,11 +190,7 @@ impl PreImageSearch {
 
     /// The pre-image of a pose that needs no search.
     fn without_search(&self, tool: &Isometry3<f64>) -> Option<PreImage> {
-        // The tool cannot be farther from joint 1 than all links together.
-        let [x, y, z] = Goal::new(&self.chain, tool).position;
-        let height = if self.task.is_planar() { 0.0 } else { z };
-        let distance = x.hypot(y).hypot(height);
-        if distance > self.reach * (1.0 + 1e-9) {
+        if is_beyond(&self.chain, self.task, tool) {
             return Some(self.nothing(Completeness::Proved));
         }
         (!is_finite(tool)).then(|| self.nothing(Completeness::Unknown))
@@ -241,6 +238,13 @@ fn is_finite(tool: &Isometry3<f64>) -> bool {
     let turn = tool.rotation.coords.iter();
     turn.chain(tool.translation.vector.iter())
         .all(|x| x.is_finite())
+}
+
+/// Whether the tool would be farther from joint 1 than all links together.
+pub(super) fn is_beyond(chain: &Chain, task: TaskSpace, tool: &Isometry3<f64>) -> bool {
+    let [x, y, z] = Goal::new(chain, tool).position;
+    let height = if task.is_planar() { 0.0 } else { z };
+    x.hypot(y).hypot(height) > reach(chain) * (1.0 + 1e-9)
 }
 
 /// No configuration brings the tool farther from the origin of joint 1, metres.

@@ -35,18 +35,19 @@ pub(super) fn panel(top: f64, joints: usize) -> Panel {
     }
 }
 
-/// Draws the bars with their axis.
+/// Draws the bars with their axis; `over` names what the ranges are taken over.
 pub(super) fn draw(
     canvas: &mut Canvas,
     panel: &Panel,
     ranges: &[AngleSet],
+    over: &str,
     limits: Option<&ArtificialLimits>,
 ) {
     let name = match limits {
-        Some(_) => "Joint ranges over all manifolds (blue) and artificial limits (orange)",
-        None => "Joint ranges over all manifolds",
+        Some(_) => format!("Joint ranges over {over} (blue) and artificial limits (orange)"),
+        None => format!("Joint ranges over {over}"),
     };
-    Label::new(name, SMALL)
+    Label::new(&name, SMALL)
         .bold()
         .draw(canvas, [panel.left, panel.top - 4.5]);
     panel.upright_grid(canvas, &ticks::quarters());

@@ -46,7 +46,7 @@ impl Figure for JointRangesFigure<'_> {
         let middle = [0.5 * DOUBLE_COLUMN, 12.0];
         title.draw_within(canvas, middle, DOUBLE_COLUMN - 2.0 * MARGIN);
         let panel = joint_bars::panel(HEAD, self.ranges.len());
-        joint_bars::draw(canvas, &panel, self.ranges, None);
+        joint_bars::draw(canvas, &panel, self.ranges, "all manifolds", None);
     }
 
     fn table(&self) -> Table {

@@ -32,6 +32,8 @@ pub struct ManifoldFigure<'a> {
     pub critical_points: &'a [CriticalPoint],
     /// Configurations at which a manifold enters or leaves the box of limits, radians.
     pub crossings: &'a [Vec<f64>],
+    /// Whether the curves are slices of one surface: then they have one colour and no names.
+    pub are_slices: bool,
     /// Title above the panels; none if empty.
     pub title: String,
 }
@@ -54,7 +56,11 @@ pub(super) const SIDE: f64 = 40.0;
 
 impl Figure for ManifoldFigure<'_> {
     fn name(&self) -> &'static str {
-        "manifolds"
+        if self.are_slices {
+            "slices"
+        } else {
+            "manifolds"
+        }
     }
 
     fn caption(&self) -> String {
@@ -76,6 +82,13 @@ impl Figure for ManifoldFigure<'_> {
                  limits but joint 1's."
             }
         };
+        if self.are_slices {
+            return format!(
+                "Curves on the surface of all configurations that hold the pose, along which some \
+                 joints stand still (not its outline; of many, a selection): the angle of every joint against that of \
+                 joint 1, and below the range of every joint over the whole surface.{limits}"
+            );
+        }
         format!(
             "Self-motion manifolds: the angle of every joint against that of joint 1, and below \
              the range of every joint over all manifolds.{limits}{critical}{crossings}"
@@ -102,7 +115,11 @@ impl Figure for ManifoldFigure<'_> {
         }
         let top = self.bars_top();
         let panel = joint_bars::panel(top, joints);
-        joint_bars::draw(canvas, &panel, self.joint_ranges, self.limits);
+        let over = match self.are_slices {
+            true => "the surface",
+            false => "all manifolds",
+        };
+        joint_bars::draw(canvas, &panel, self.joint_ranges, over, self.limits);
     }
 
     fn table(&self) -> Table {
@@ -147,7 +164,18 @@ impl ManifoldFigure<'_> {
             critical_points: self.critical_points,
             crossings: self.crossings,
         };
-        entries(self.curves.len(), &marks)
+        let mut entries = entries(self.curves.len(), &marks);
+        if self.are_slices {
+            let first_mark = self.curves.len().min(NAMED);
+            let first_mark = if self.curves.len() > NAMED {
+                1
+            } else {
+                first_mark
+            };
+            let curve = (Swatch::Line(COLOURS[0]), "curves on slices".to_owned());
+            entries.splice(..first_mark, [curve]);
+        }
+        entries
     }
 
     /// Height of title and legend, points.
@@ -196,7 +224,7 @@ impl ManifoldFigure<'_> {
         panel.grid(canvas, &quarters);
         panel.upright_grid(canvas, &quarters);
         self.draw_box(canvas, &panel, joint);
-        draw_lines(canvas, cut, |points| {
+        draw_lines(canvas, cut, self.are_slices, |points| {
             let lines = wrapped(points, [0, joint]);
             lines.iter().map(|line| panel.path(line)).collect()
         });
@@ -275,18 +303,25 @@ pub(super) fn entries(curves: usize, marks: &Marks) -> Vec<(Swatch, String)> {
     entries
 }
 
-/// Draws all curves, the parts within the limits thick and on top.
+/// Widths of the lines of slices, which are many, points.
+const SLICE_WIDTHS: [f64; 2] = [0.3, 0.9];
+
+/// Draws all curves, the parts within the limits thick and on top; slices in one colour.
 pub(super) fn draw_lines(
     canvas: &mut Canvas,
     cut: &[Vec<Piece>],
+    are_slices: bool,
     seen: impl Fn(&[Vec<f64>]) -> Vec<Vec<Point>>,
 ) {
     for is_inside in [false, true] {
         for (k, pieces) in cut.iter().enumerate() {
-            let colour = COLOURS[k % COLOURS.len()];
+            let (colour, widths) = match are_slices {
+                true => (COLOURS[0], SLICE_WIDTHS),
+                false => (COLOURS[k % COLOURS.len()], WIDTHS),
+            };
             for piece in pieces.iter().filter(|piece| piece.is_inside == is_inside) {
                 for line in seen(&piece.points) {
-                    canvas.stroke(&line, WIDTHS[usize::from(is_inside)], colour);
+                    canvas.stroke(&line, widths[usize::from(is_inside)], colour);
                 }
             }
         }

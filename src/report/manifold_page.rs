@@ -1,7 +1,9 @@
 //! `report.html` of a study of one pose.
 
 use super::html::{InlineFigure, document, heading, inlined, notes, sources, symbol};
-use super::manifold_report::{CURVES, JointRow, ManifoldReport, ManifoldRow, PoseVerdict};
+use super::manifold_report::{
+    CURVES, JointRow, ManifoldReport, ManifoldRow, PoseVerdict, SurfaceSummary,
+};
 use super::number::{degrees, exact_degrees, joint_symbol, plain, rounded};
 use crate::angle::AngleSet;
 use maud::{Markup, html};
@@ -13,9 +15,11 @@ pub(super) fn manifold_page(report: &ManifoldReport, figures: &[InlineFigure]) -
         (heading(&report.title, &report.study, &report.robot, &report.source, &[]))
         (summary(report))
         (notes(&report.notes))
-        @if !report.manifolds.is_empty() {
-            h2 { "Self-motion manifolds" }
-            (manifolds(&report.manifolds))
+        @if report.figure.is_some() {
+            @if report.surface.is_none() {
+                h2 { "Self-motion manifolds" }
+                (manifolds(&report.manifolds))
+            }
             h2 { "Joints" }
             (joints(report))
             h2 { "Figures" }
@@ -40,19 +44,36 @@ fn summary(report: &ManifoldReport) -> Markup {
     html! {
         p.summary {
             "Task: " (report.task) ". "
-            @match count {
+            @if let (Some(surface), true) = (&report.surface, report.figure.is_some()) {
+                (surface_of(surface))
+            } @else { @match count {
                 0 => { "No configuration of the robot holds the pose. " }
                 1 => { "The robot holds the pose on " strong { "one self-motion manifold" } ". " }
                 _ => {
                     "The robot holds the pose on " strong { (count) " self-motion manifolds" } ". "
                 }
-            }
+            } }
             "That this is all is " (report.completeness) ". "
             @if count > 0 {
                 "The winding vectors sum to " (vector(&report.winding_sum)) "."
             }
         }
         @if let Some(verdict) = &report.verdict { (verdict_of(report, verdict)) }
+    }
+}
+
+fn surface_of(surface: &SurfaceSummary) -> Markup {
+    let held: Vec<String> = surface.held.iter().map(usize::to_string).collect();
+    let joints = match held.len() {
+        1 => "joint",
+        _ => "joints",
+    };
+    html! {
+        "The configurations with which the robot holds the pose form a "
+        strong { "surface of dimension " (surface.dimension) }
+        ". It is known by " (surface.curves) " curves on " (surface.slices)
+        " slices, along which some joints are held: " (joints) " " (listed(&held)) " at "
+        (surface.values) " values each. "
     }
 }
 
@@ -118,7 +139,10 @@ fn joints(report: &ManifoldReport) -> Markup {
     html! {
         div.scroll { table {
             tr {
-                th { "joint" } th { "range over all manifolds" }
+                th { "joint" } th {
+                    @if report.surface.is_some() { "range over the surface" }
+                    @else { "range over all manifolds" }
+                }
                 @if limited { th { "artificial limits" } th { "a lock inside the limits" } }
             }
             @for (number, row) in (1..).zip(&report.joints) {

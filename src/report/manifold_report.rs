@@ -47,6 +47,21 @@ pub struct JointRow {
     pub is_tolerated: Option<bool>,
 }
 
+/// A pre-image of two or more dimensions in a sentence.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfaceSummary {
+    /// The degree of redundancy.
+    pub dimension: usize,
+    /// Numbers of the joints that slices hold.
+    pub held: Vec<usize>,
+    /// Values at which each is held.
+    pub values: usize,
+    /// Slices with curves.
+    pub slices: usize,
+    /// The curves on them.
+    pub curves: usize,
+}
+
 /// What artificial limits make of the pose.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PoseVerdict {
@@ -79,8 +94,10 @@ pub struct ManifoldReport<'a> {
     pub completeness: String,
     /// Sum of the winding vectors.
     pub winding_sum: Vec<i32>,
-    /// The manifolds in order.
+    /// The manifolds in order; none where the pre-image is a surface.
     pub manifolds: Vec<ManifoldRow>,
+    /// The pre-image, where it is a surface.
+    pub surface: Option<SurfaceSummary>,
     /// The joints in order.
     pub joints: Vec<JointRow>,
     /// What artificial limits make of the pose, if there are any.
@@ -89,8 +106,8 @@ pub struct ManifoldReport<'a> {
     pub figure: Option<ManifoldFigure<'a>>,
     /// The manifolds in the space of three joints; none if there is no manifold.
     pub view: Option<ManifoldFigure3d<'a>>,
-    /// The vertices of the curves, written as `manifolds.csv`.
-    pub vertices: Table,
+    /// The vertices of the manifolds, written as `manifolds.csv`.
+    pub vertices: Option<Table>,
     /// Written as `result.json`.
     pub result_json: serde_json::Value,
     /// The study as run, written as `study.toml`.
@@ -119,10 +136,12 @@ pub fn write_manifold_report(
     let in_space = report.view.as_ref().map(|f| f as &dyn Figure);
     let figures = flat.into_iter().chain(in_space);
     let (mut written, inline) = write_figures(figures, directory, formats)?;
-    let vertices = path("manifolds.csv");
-    write_text(&vertices, &report.vertices.to_csv()?)?;
-    if !written.contains(&vertices) {
-        written.push(vertices);
+    if let Some(table) = &report.vertices {
+        let vertices = path("manifolds.csv");
+        write_text(&vertices, &table.to_csv()?)?;
+        if !written.contains(&vertices) {
+            written.push(vertices);
+        }
     }
     if let Some(view) = &report.view {
         write_curves(view.curves, view.joints, &path(CURVES))?;

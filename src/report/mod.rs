@@ -109,7 +109,7 @@ pub use locks_figure::{GoalLocks, LockMark, LocksFigure};
 pub use manifold::{CriticalPoint, ManifoldCurve};
 pub use manifold_figure::ManifoldFigure;
 pub use manifold_report::{
-    JointRow, ManifoldReport, ManifoldRow, PoseVerdict, write_manifold_report,
+    JointRow, ManifoldReport, ManifoldRow, PoseVerdict, SurfaceSummary, write_manifold_report,
 };
 pub use manifold_view::ManifoldFigure3d;
 pub use number::{degrees, estimate, joint_symbol, percentage, plain, unit, with_error};

@@ -4,7 +4,7 @@ use super::hybrid_settings::Hybrid;
 use super::hybrid_table::MOST_SAMPLES;
 use super::run::{Progress, RunError};
 use super::settings::{Question, Study};
-use crate::design::{Robot, TaskSpace};
+use crate::design::{JointKind, Robot, TaskSpace};
 use crate::diagnostic::{InputError, Problem};
 use crate::kinematics::workspace_extent;
 use crate::workspace::ArtificialLimits;
@@ -49,10 +49,11 @@ impl Needed {
         samples: Samples,
         limits: Option<&ArtificialLimits>,
     ) -> Result<Needed, RunError> {
+        let turns = study.design.robot.joint_kind(0) == JointKind::Revolute;
         let plan = SamplePlan {
             task: study.task,
             region: region(&study.design.robot, study.task)?,
-            sampling: hybrid.sampling.to_plan(),
+            sampling: hybrid.sampling.to_plan(turns),
             seed: match samples {
                 Samples::OfTheSeed => study.seed,
                 Samples::Independent => study.seed.wrapping_add(INDEPENDENT),

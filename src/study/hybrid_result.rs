@@ -84,6 +84,10 @@ fn sampling(plan: &SamplePlan) -> Value {
             samples: _,
             replicates,
         } => json!({ "method": "lattice", "replicates": replicates }),
+        Sampling::Everywhere {
+            samples: _,
+            replicates,
+        } => json!({ "method": "lattice", "azimuths": "all", "replicates": replicates }),
         Sampling::Grid {
             cell: _,
             orientations,

@@ -207,11 +207,12 @@ impl Run<'_> {
         if study.report.figures {
             let robot = &study.design.robot;
             let picture = Picture::of(atlas, robot, limits, &study.failures);
-            let figures = picture.figures(&robot.name);
+            let picture = picture.as_ref();
+            let figures = picture.map_or(Vec::new(), |picture| picture.figures(&robot.name));
             let mut report = self.report(&finding, limits, result.clone());
-            report.workspace = picture.planar(&robot.name);
+            report.workspace = picture.and_then(|picture| picture.planar(&robot.name));
             report.figures = figures.iter().map(|figure| figure.as_ref()).collect();
-            report.points = picture.spatial();
+            report.points = picture.and_then(Picture::spatial);
             report.sensitivity = searched.and_then(|searched| searched.sensitivity.clone());
             write_report(&report, &self.options.out, &formats(study))
                 .map_err(anyhow::Error::from)?;
@@ -275,6 +276,13 @@ impl Run<'_> {
                  count with what was found.",
                 counts.failed, counts.reachable
             ));
+        }
+        if !atlas.plan().sampling.uses_turns() {
+            notes.push(
+                "Joint 1 slides, so task points at all azimuths were sampled. No map is drawn: maps \
+                 show workspaces that turn with joint 1."
+                    .into(),
+            );
         }
         let slides = |index: &usize| robot.joint_kind(*index) == JointKind::Prismatic;
         for index in (0..robot.joints()).filter(slides) {

@@ -72,9 +72,16 @@ impl Hybrid {
 }
 
 impl HybridSampling {
-    /// As the sample plan has it.
-    pub(super) fn to_plan(self) -> Sampling {
+    /// As the sample plan has it; `turns` tells that joint 1 turns.
+    pub(super) fn to_plan(self, turns: bool) -> Sampling {
         match self {
+            HybridSampling::Lattice {
+                samples,
+                replicates,
+            } if !turns => Sampling::Everywhere {
+                samples,
+                replicates,
+            },
             HybridSampling::Lattice {
                 samples,
                 replicates,

@@ -42,7 +42,7 @@ pub(super) struct HybridTable {
     tolerance_rad: Option<f64>,
     memory_limit_mb: Option<u64>,
     slices: Option<u64>,
-    rule: Option<Rule>,
+    rule: Option<Item<Rule>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -70,7 +70,7 @@ pub(super) fn read(estimator: &Table) -> Option<HybridTable> {
             .integer("memory_limit_mb", 1..=MOST_MEGABYTES)
             .map(|item| item.value),
         slices: table.integer("slices", 8..=1024).map(|item| item.value),
-        rule: table.choice("rule", &rules).map(|item| item.value),
+        rule: table.choice("rule", &rules),
     })
 }
 
@@ -100,11 +100,35 @@ pub(super) fn settings(
         tolerance_rad: table.tolerance_rad.unwrap_or(default.tolerance_rad),
         memory_limit_mb: table.memory_limit_mb.unwrap_or(default.memory_limit_mb),
         slices: table.slices.unwrap_or(default.slices),
-        rule: table.rule.unwrap_or(default.rule),
+        rule: table.rule.as_ref().map_or(default.rule, |item| item.value),
     }
 }
 
 impl HybridTable {
+    /// Reports what rests on turns about joint 1, for a robot whose joint 1 slides.
+    pub(super) fn refuse_turns(&self, problems: &Problems) {
+        if let Some(item) = self
+            .sampling
+            .as_ref()
+            .filter(|item| item.value == Named::Grid)
+        {
+            problems.reject(
+                &item.place,
+                "a grid lies in the half-plane that joint 1 turns, and joint 1 of this robot slides",
+                "\"lattice\", which then lies in the whole space",
+                "remove `sampling` and the keys of the grid",
+            );
+        }
+        if let Some(item) = self.rule.as_ref().filter(|item| item.value == Rule::Paper) {
+            problems.reject(
+                &item.place,
+                "the paper's rule takes intervals of joint 1's angle, and joint 1 of this robot slides",
+                "\"definition\"",
+                "remove `rule`",
+            );
+        }
+    }
+
     fn lattice(&self, task: TaskSpace, problems: &Problems) -> HybridSampling {
         let samples = value(&self.samples, default_samples(task));
         let most = samples / LEAST_OF_REPLICATE as u32;

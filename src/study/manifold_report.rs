@@ -2,7 +2,7 @@
 
 use super::manifold_result::{ManifoldFinding, curves};
 use super::report_parts::{failures_label, provenance_rows};
-use super::settings::Pose;
+use super::settings::{Pose, Study};
 use crate::angle::{AngleSet, Arc};
 use crate::design::{JointKind, Robot};
 use crate::kinematics::joint_scales;
@@ -11,7 +11,7 @@ use crate::report::{
     CriticalPoint, JointRow, ManifoldCurve, ManifoldFigure, ManifoldFigure3d, ManifoldReport,
     ManifoldRow, PoseVerdict,
 };
-use crate::workspace::ArtificialLimits;
+use crate::workspace::{ArtificialLimits, PoseTolerance};
 use serde_json::Value;
 use std::f64::consts::{PI, TAU};
 
@@ -60,6 +60,7 @@ impl Picture {
             limits: self.limits.as_ref(),
             critical_points: &self.critical_points,
             crossings: &self.crossings,
+            are_slices: false,
             title: title.to_owned(),
         }
     }
@@ -98,15 +99,17 @@ pub(super) fn manifold_report<'p>(
         completeness: completeness(finding.pre_image.completeness),
         winding_sum: finding.pre_image.winding_sum(),
         manifolds: manifold_rows(finding),
-        joints: joint_rows(finding, picture),
-        verdict: finding.tolerance.map(|tolerance| PoseVerdict {
-            is_reached: tolerance.before_failure.contains(0.0),
-            is_fault_tolerant: tolerance.rotation_set.contains(0.0),
-            rotation_set: tolerance.rotation_set.clone(),
-        }),
+        joints: joint_rows(
+            study,
+            &picture.joint_ranges,
+            picture.limits.as_ref(),
+            finding.tolerance,
+        ),
+        verdict: finding.tolerance.map(verdict),
         figure: found.then(|| picture.figure(&robot.name)),
         view: found.then(|| picture.view(&robot.name)),
-        vertices: curves(finding.pre_image, robot),
+        surface: None,
+        vertices: Some(curves(finding.pre_image, robot)),
         result_json: result.clone(),
         study_toml: study_toml.to_owned(),
         provenance: provenance_rows(study, finding.threads),
@@ -116,10 +119,15 @@ pub(super) fn manifold_report<'p>(
 
 /// A manifold as a line of short straight parts.
 pub(super) fn drawn(manifold: &SelfMotionManifold) -> ManifoldCurve {
+    line_of(manifold, PARTS)
+}
+
+/// A curve as a line, `parts` straight parts for every segment.
+pub(super) fn line_of(manifold: &SelfMotionManifold, parts: usize) -> ManifoldCurve {
     let mut points = vec![manifold.point(0).to_vec()];
     for index in 0..manifold.vertices().saturating_sub(1) {
-        let at = |part: usize| manifold.at(index, part as f64 / PARTS as f64);
-        points.extend((1..=PARTS).map(at));
+        let at = |part: usize| manifold.at(index, part as f64 / parts as f64);
+        points.extend((1..=parts).map(at));
     }
     let closed = manifold.status == CurveStatus::Closed;
     if closed {
@@ -182,7 +190,7 @@ fn completeness(completeness: Completeness) -> String {
     }
 }
 
-fn pose_rows(pose: &Pose) -> Vec<(String, String)> {
+pub(super) fn pose_rows(pose: &Pose) -> Vec<(String, String)> {
     let row = |numbers: &[f64]| {
         let numbers: Vec<String> = numbers.iter().map(f64::to_string).collect();
         format!("({})", numbers.join(", "))
@@ -220,8 +228,21 @@ fn manifold_rows(finding: &ManifoldFinding) -> Vec<ManifoldRow> {
     manifolds.zip(finding.crossings).map(row).collect()
 }
 
-fn joint_rows(finding: &ManifoldFinding, picture: &Picture) -> Vec<JointRow> {
-    let robot: &Robot = &finding.study.design.robot;
+pub(super) fn verdict(tolerance: &PoseTolerance) -> PoseVerdict {
+    PoseVerdict {
+        is_reached: tolerance.before_failure.contains(0.0),
+        is_fault_tolerant: tolerance.rotation_set.contains(0.0),
+        rotation_set: tolerance.rotation_set.clone(),
+    }
+}
+
+pub(super) fn joint_rows(
+    study: &Study,
+    ranges: &[AngleSet],
+    limits: Option<&ArtificialLimits>,
+    tolerance: Option<&PoseTolerance>,
+) -> Vec<JointRow> {
+    let robot: &Robot = &study.design.robot;
     let scales = joint_scales(robot).unwrap_or_default();
     let row = |(joint, range): (usize, &AngleSet)| {
         let is_prismatic = robot.joint_kind(joint) == JointKind::Prismatic;
@@ -230,14 +251,14 @@ fn joint_rows(finding: &ManifoldFinding, picture: &Picture) -> Vec<JointRow> {
             _ => ends,
         };
         let ends = |arc: &Arc| outer([arc.start(), arc.end()]);
-        let limit = picture.limits.as_ref().map(|l| l.joints()[joint]);
+        let limit = limits.map(|l| l.joints()[joint]);
         JointRow {
             ranges: range.arcs().iter().map(ends).collect(),
             limits: limit.map(|limit| outer([limit.lower, limit.upper])),
             is_prismatic,
-            is_prone: finding.study.failures.contains(joint + 1),
-            is_tolerated: finding.tolerance.map(|t| t.survives[joint]),
+            is_prone: study.failures.contains(joint + 1),
+            is_tolerated: tolerance.map(|t| t.survives[joint]),
         }
     };
-    picture.joint_ranges.iter().enumerate().map(row).collect()
+    ranges.iter().enumerate().map(row).collect()
 }

@@ -48,6 +48,7 @@ impl ManifoldFinding<'_> {
             "kind": study.question.kind(),
             "status": "done",
             "pose": self.manifolds.pose,
+            "degree_of_redundancy": 1,
             "manifolds": manifolds,
         });
         joints.put_ranges(&mut result, &self.ranges(&found.manifolds));
@@ -59,9 +60,9 @@ impl ManifoldFinding<'_> {
         };
         result["seeds"] = json!(found.seeds);
         result["landed"] = json!(found.landed);
-        result["residual"] = self.residual();
+        result["residual"] = residual(study.task, self.residual);
         if let Some(tolerance) = self.tolerance {
-            self.put_tolerance(&mut result, tolerance);
+            put_tolerance(&mut result, study, self.manifolds, tolerance);
         }
         result["notes"] = json!(self.notes());
         result["seconds"] = self.seconds.clone();
@@ -76,34 +77,6 @@ impl ManifoldFinding<'_> {
         }
         let joint = |joint| AngleSet::from_arcs(manifolds.iter().map(|m| m.joint_range(joint)));
         (0..self.physical.len()).map(joint).collect()
-    }
-
-    fn residual(&self) -> Value {
-        let [metres, radians] = self.residual;
-        match self.study.task {
-            TaskSpace::PlanarPose | TaskSpace::SpatialPose => {
-                json!({ "m": metres, "rad": radians })
-            }
-            _ => json!({ "m": metres }),
-        }
-    }
-
-    fn put_tolerance(&self, result: &mut Value, tolerance: &PoseTolerance) {
-        if let Some(limits) = &self.manifolds.limits {
-            result["limits_deg"] = limits_deg(limits);
-            if !limits.lower.is_empty() {
-                result["limits_m"] = json!({ "lower": limits.lower, "upper": limits.upper });
-            }
-        }
-        let locks = (1..).zip(&tolerance.survives).map(|(joint, survives)| {
-            let prone = self.study.failures.contains(joint);
-            json!({ "joint": joint, "prone": prone, "tolerated": survives })
-        });
-        result["margin_deg"] = json!(self.study.margin_deg);
-        result["locks"] = locks.collect();
-        result["reached_within_limits"] = json!(tolerance.before_failure.contains(0.0));
-        result["fault_tolerant"] = json!(tolerance.rotation_set.contains(0.0));
-        result["rotation_set_deg"] = json!(degree_pairs(&tolerance.rotation_set));
     }
 
     /// What a reader of the numbers must not miss.
@@ -121,23 +94,64 @@ impl ManifoldFinding<'_> {
             ),
             _ => {}
         }
-        let robot = &self.study.design.robot;
-        for index in (0..robot.joints()).filter(|&k| robot.joint_kind(k) == JointKind::Prismatic) {
-            notes.push(format!(
-                "Figures and curves.vtk show prismatic joint {} with its stroke as half a turn; \
-                 result.json and manifolds.csv have metres.",
-                index + 1
-            ));
-        }
-        if robot.physical_limits.is_some() {
-            notes.push(
+        notes.extend(robot_notes(
+            &self.study.design.robot,
+            "Figures and curves.vtk show",
+        ));
+        notes
+    }
+}
+
+/// What a reader must know of prismatic joints and physical limits; `shown` begins the sentence on
+/// what shows prismatic joints as angles.
+pub(super) fn robot_notes(robot: &Robot, shown: &str) -> Vec<String> {
+    let mut notes = Vec::new();
+    for index in (0..robot.joints()).filter(|&k| robot.joint_kind(k) == JointKind::Prismatic) {
+        notes.push(format!(
+            "{shown} prismatic joint {} with its stroke as half a turn; result.json has metres.",
+            index + 1
+        ));
+    }
+    if robot.physical_limits.is_some() {
+        notes.push(
                 "Joint ranges are those inside the physical limits; lengths, windings, critical points \
                  and vertices are of the whole curves."
                     .into(),
             );
-        }
-        notes
     }
+    notes
+}
+
+/// Largest distance from the pose as `result.json` has it.
+pub(super) fn residual(task: TaskSpace, [metres, radians]: [f64; 2]) -> Value {
+    match task {
+        TaskSpace::PlanarPose | TaskSpace::SpatialPose => json!({ "m": metres, "rad": radians }),
+        _ => json!({ "m": metres }),
+    }
+}
+
+/// What artificial limits make of the pose.
+pub(super) fn put_tolerance(
+    result: &mut Value,
+    study: &Study,
+    manifolds: &Manifolds,
+    tolerance: &PoseTolerance,
+) {
+    if let Some(limits) = &manifolds.limits {
+        result["limits_deg"] = limits_deg(limits);
+        if !limits.lower.is_empty() {
+            result["limits_m"] = json!({ "lower": limits.lower, "upper": limits.upper });
+        }
+    }
+    let locks = (1..).zip(&tolerance.survives).map(|(joint, survives)| {
+        let prone = study.failures.contains(joint);
+        json!({ "joint": joint, "prone": prone, "tolerated": survives })
+    });
+    result["margin_deg"] = json!(study.margin_deg);
+    result["locks"] = locks.collect();
+    result["reached_within_limits"] = json!(tolerance.before_failure.contains(0.0));
+    result["fault_tolerant"] = json!(tolerance.rotation_set.contains(0.0));
+    result["rotation_set_deg"] = json!(degree_pairs(&tolerance.rotation_set));
 }
 
 /// How joint variables are written: revolute joints in degrees, prismatic ones in metres.

@@ -6,15 +6,15 @@ use super::manifold_result::{ManifoldFinding, curves};
 use super::report_parts::formats;
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::{ManifoldSearch, Manifolds, Pose, Study};
-use crate::angle::Arc;
-use crate::design::{JointKind, Robot};
-use crate::manifold::{PreImage, PreImageSearch, SearchSettings, SelfMotionManifold};
+use super::surface_run;
+use crate::design::TaskSpace;
+use crate::kinematics::Chain;
+use crate::manifold::{PreImageSearch, SearchSettings, SelfMotionManifold, physical_arcs};
 use crate::report::{self, ReportError, write_manifold_report};
 use crate::sampling;
 use crate::workspace::{PoseTolerance, limit_crossings};
 use nalgebra::{Isometry3, Matrix3, Rotation3, Translation3, UnitQuaternion, Vector3};
 use serde_json::{Value, json};
-use std::f64::consts::{FRAC_PI_2, TAU};
 use std::time::Instant;
 
 /// Residual above which one Newton step per vertex is enough.
@@ -30,6 +30,9 @@ pub(super) fn run(
     options: &RunOptions,
     ready: Ready,
 ) -> Result<Value, RunError> {
+    if study.design.robot.degree_of_redundancy(study.task) > 1 {
+        return surface_run::run(study, manifolds, options, ready);
+    }
     ready.begin(options)?;
     let progress = &ready.session.progress;
     progress.update(0, 1, f64::NAN, "tracing");
@@ -39,7 +42,7 @@ pub(super) fn run(
         .map_err(anyhow::Error::from)?;
     let pose = tool(&manifolds.pose);
     let pre_image = search.find(&pose, &mut sampling::stream(study.seed, 0));
-    let physical = physical(robot);
+    let physical = physical_arcs(robot);
     let limits = manifolds.limits.as_ref().map(|l| l.to_limits(robot));
     let judge = |l| PoseTolerance::of(&pre_image, &physical, l, &study.failures);
     let tolerance = limits.as_ref().map(judge);
@@ -55,7 +58,7 @@ pub(super) fn run(
         physical: &physical,
         tolerance: tolerance.as_ref(),
         crossings: &crossings,
-        residual: residual(&search, &pre_image, &pose, study),
+        residual: residual(search.chain(), &pre_image.manifolds, &pose, study.task),
         seconds: json!({
             "total": ready.session.store.seconds(),
             "search": started.elapsed().as_secs_f64(),
@@ -88,7 +91,7 @@ fn write(
     report::write_json(&out.join("result.json"), result)
 }
 
-fn settings(search: &ManifoldSearch) -> SearchSettings {
+pub(super) fn settings(search: &ManifoldSearch) -> SearchSettings {
     let mut settings = SearchSettings::default();
     settings.least_seeds = search.seeds as usize;
     settings.most_seeds = settings.most_seeds.max(settings.least_seeds);
@@ -100,7 +103,7 @@ fn settings(search: &ManifoldSearch) -> SearchSettings {
 }
 
 /// The pose of the tool in the world frame.
-fn tool(pose: &Pose) -> Isometry3<f64> {
+pub(super) fn tool(pose: &Pose) -> Isometry3<f64> {
     let coordinate = |k: usize| pose.position.get(k).copied().unwrap_or(0.0);
     let rotation = match (&pose.rotation, pose.phi_deg) {
         (Some(rows), _) => {
@@ -115,35 +118,19 @@ fn tool(pose: &Pose) -> Isometry3<f64> {
     Isometry3::from_parts(position, rotation)
 }
 
-/// Physical limits as arcs of internal joint variables.
-fn physical(robot: &Robot) -> Vec<Arc> {
-    let arc = |joint: usize| match (robot.joint_kind(joint), &robot.physical_limits) {
-        (JointKind::Prismatic, _) => Arc::from_interval(-FRAC_PI_2, FRAC_PI_2),
-        (JointKind::Revolute, Some(limits)) => {
-            let (lower, upper) = (limits.lower[joint], limits.upper[joint]);
-            match upper - lower >= TAU - 1e-9 {
-                true => Arc::FULL,
-                false => Arc::from_interval(lower, upper),
-            }
-        }
-        (JointKind::Revolute, None) => Arc::FULL,
-    };
-    (0..robot.joints()).map(arc).collect()
-}
-
 /// Largest distance of a vertex' pose from the wanted one: metres, and radians of orientation.
-fn residual(
-    search: &PreImageSearch,
-    pre_image: &PreImage,
+pub(super) fn residual<'m>(
+    chain: &Chain,
+    curves: impl IntoIterator<Item = &'m SelfMotionManifold>,
     pose: &Isometry3<f64>,
-    study: &Study,
+    task: TaskSpace,
 ) -> [f64; 2] {
     let mut worst = [0.0f64; 2];
-    for manifold in &pre_image.manifolds {
-        for index in 0..manifold.vertices() {
-            let tool = search.chain().tool(manifold.point(index));
+    for curve in curves {
+        for index in 0..curve.vertices() {
+            let tool = chain.tool(curve.point(index));
             let mut off = tool.translation.vector - pose.translation.vector;
-            if study.task.is_planar() {
+            if task.is_planar() {
                 off.z = 0.0;
             }
             worst[0] = worst[0].max(off.norm());

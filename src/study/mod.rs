@@ -47,6 +47,8 @@ mod singular_table;
 mod singularity_run;
 mod spatial_picture;
 mod structure;
+mod surface_result;
+mod surface_run;
 mod surrogate_check;
 mod surrogate_search;
 mod surrogate_settings;

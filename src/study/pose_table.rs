@@ -13,6 +13,10 @@ const ORTHONORMAL: f64 = 1e-6;
 /// Most random starts.
 const MOST_SEEDS: u64 = 10_000_000;
 
+/// Most values of a joint that slices hold, and what a study takes by default.
+const MOST_SLICES: u64 = 256;
+const SLICES: u64 = 32;
+
 /// The table `[pose]` as written.
 #[derive(Clone, Debug, PartialEq)]
 pub(super) struct PoseTable {
@@ -26,6 +30,7 @@ pub(super) struct PoseTable {
 pub(super) struct ManifoldsTable {
     seeds: Option<u64>,
     residual: Option<f64>,
+    slices: Option<Item<u64>>,
 }
 
 /// Reads `[pose]`.
@@ -55,7 +60,7 @@ pub(super) fn read_pose(root: &Table) -> Option<Item<PoseTable>> {
 
 /// Reads `[manifolds]`.
 pub(super) fn read_manifolds(root: &Table) -> Option<Item<ManifoldsTable>> {
-    let table = root.table("manifolds", &["seeds", "residual"])?;
+    let table = root.table("manifolds", &["seeds", "residual", "slices"])?;
     Some(Item {
         value: ManifoldsTable {
             seeds: table
@@ -64,18 +69,34 @@ pub(super) fn read_manifolds(root: &Table) -> Option<Item<ManifoldsTable>> {
             residual: table
                 .number("residual", 1e-9..=1e-3, "")
                 .map(|item| item.value),
+            slices: table.integer("slices", 4..=MOST_SLICES),
         },
         place: root.key_place("manifolds")?,
     })
 }
 
-/// The settings of the search.
-pub(super) fn search(table: Option<&ManifoldsTable>) -> ManifoldSearch {
+/// The settings of the search for a robot with `degree` degrees of redundancy.
+pub(super) fn search(
+    table: Option<&ManifoldsTable>,
+    degree: isize,
+    problems: &Problems,
+) -> ManifoldSearch {
     let default = ManifoldSearch::default();
     let table = table.cloned().unwrap_or_default();
+    if let (Some(slices), true) = (&table.slices, degree < 2) {
+        let problem = Problem {
+            message: "this key has no meaning with one degree of redundancy".into(),
+            found: "`slices`".into(),
+            expected: "a robot whose pre-images are surfaces, which are cut into slices".into(),
+            help: "remove the key".into(),
+        };
+        problems.report(&slices.place, problem);
+    }
+    let slices = table.slices.map_or(SLICES, |item| item.value);
     ManifoldSearch {
         seeds: table.seeds.unwrap_or(default.seeds),
         residual: table.residual.unwrap_or(default.residual),
+        slices: (degree > 1).then_some(slices),
     }
 }
 

@@ -6,7 +6,6 @@ use crate::design::{JointKind, Robot, TaskSpace};
 use crate::diagnostic::{Place, Problem, Problems};
 use crate::kinematics::joint_scales;
 use crate::manifold::MOST_REDUNDANT;
-use std::f64::consts::TAU;
 
 /// Names the estimator for everything "exact" cannot serve.
 const HYBRID: &str = "use `method = \"hybrid\"`, which serves this";
@@ -43,6 +42,11 @@ pub(super) fn choose(file: &StudyFile, problems: &Problems, robot: &Robot) -> Es
         EstimatorMethod::Exact | EstimatorMethod::Surrogate => exact,
         EstimatorMethod::Hybrid => {
             refuse_exact_only(file, problems);
+            if let (JointKind::Prismatic, Some(table)) =
+                (robot.joint_kind(0), &file.estimator.hybrid)
+            {
+                table.refuse_turns(problems);
+            }
             hybrid_refusal(file, robot)
         }
     };
@@ -52,17 +56,20 @@ pub(super) fn choose(file: &StudyFile, problems: &Problems, robot: &Robot) -> Es
     method
 }
 
-/// Reports why the manifolds of a pose cannot be traced.
+/// Reports why the configurations that hold a pose cannot be found.
 pub(super) fn check_manifolds(file: &StudyFile, problems: &Problems, robot: &Robot) {
+    check_redundancy(file, problems, robot, MAX_REDUNDANCY);
+}
+
+/// Reports why self-motion manifolds cannot be traced as curves.
+pub(super) fn check_curves(file: &StudyFile, problems: &Problems, robot: &Robot) {
+    check_redundancy(file, problems, robot, CURVES);
+}
+
+fn check_redundancy(file: &StudyFile, problems: &Problems, robot: &Robot, most: isize) {
     if robot.degree_of_redundancy(file.space.value) < 1 {
         report_no_redundancy(file, problems, robot);
-        return;
-    }
-    let limited = file
-        .limits
-        .as_ref()
-        .and_then(|_| physical_refusal(file, robot));
-    if let Some(Refusal { place, problem }) = manifold_refusal(file, robot, CURVES).or(limited) {
+    } else if let Some(Refusal { place, problem }) = manifold_refusal(file, robot, most) {
         problems.report(place, problem);
     }
 }
@@ -93,7 +100,7 @@ pub(super) fn check_singularities(file: &StudyFile, problems: &Problems, robot: 
 pub(super) fn check_atlas(file: &StudyFile, problems: &Problems, robot: &Robot) {
     if robot.degree_of_redundancy(file.space.value) < 1 {
         report_no_redundancy(file, problems, robot);
-    } else if let Some(Refusal { place, problem }) = hybrid_refusal(file, robot) {
+    } else if let Some(Refusal { place, problem }) = manifold_refusal(file, robot, MAX_REDUNDANCY) {
         problems.report(place, problem);
     }
 }
@@ -137,13 +144,34 @@ fn exact_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> 
     refusal(place, message, found, expected, help)
 }
 
-/// The atlas holds pre-images of up to [`MAX_REDUNDANCY`] degrees of redundancy.
+/// The atlas holds pre-images of up to [`MAX_REDUNDANCY`] degrees of redundancy; of curves alone
+/// where joint 1 slides, whose stroke would be a wall of every surface.
 fn hybrid_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
-    manifold_refusal(file, robot, MAX_REDUNDANCY)
+    if robot.joint_kind(0) == JointKind::Revolute {
+        return manifold_refusal(file, robot, MAX_REDUNDANCY);
+    }
+    let degree = robot.degree_of_redundancy(file.space.value);
+    if degree > CURVES {
+        let found = format!(
+            "the robot `{}`, whose joint 1 is prismatic, with a degree of redundancy of {degree}",
+            robot.name
+        );
+        let expected = "one joint more than the task has dimensions where joint 1 slides";
+        let help = "choose a task of more dimensions, or a robot whose joint 1 turns";
+        return refusal(&file.design.place, CANNOT_TRACE, found, expected, help);
+    }
+    chain_refusal(file, robot, CURVES).or_else(|| stroke_refusal(file, robot))
 }
 
 /// Pre-images are traced for at most `most` degrees of redundancy, about a revolute joint 1.
 fn manifold_refusal<'f>(file: &'f StudyFile, robot: &Robot, most: isize) -> Option<Refusal<'f>> {
+    let turning = || first_joint_refusal(file, robot);
+    let refused = chain_refusal(file, robot, most).or_else(turning);
+    refused.or_else(|| stroke_refusal(file, robot))
+}
+
+/// The robot is of the right kind for the task, with at most `most` degrees of redundancy.
+fn chain_refusal<'f>(file: &'f StudyFile, robot: &Robot, most: isize) -> Option<Refusal<'f>> {
     let task = file.space.value;
     let design = &file.design.place;
     let name = &robot.name;
@@ -171,46 +199,34 @@ fn manifold_refusal<'f>(file: &'f StudyFile, robot: &Robot, most: isize) -> Opti
         let help = "choose a planar task";
         return refusal(design, message, found, expected, help);
     }
-    prismatic_refusal(file, robot)
-}
-
-/// Joint 1 turns, and a stroke sets the scale of every other prismatic joint.
-fn prismatic_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
-    let design = &file.design.place;
-    let message = CANNOT_TRACE;
-    if robot.joint_kind(0) == JointKind::Prismatic {
-        let found = format!("the robot `{}`, whose joint 1 is prismatic", robot.name);
-        let expected = "a revolute joint 1, about which the workspace is turned";
-        let help = "choose a robot whose joint 1 turns";
-        return refusal(design, message, found, expected, help);
-    }
-    if joint_scales(robot).is_none() {
-        let prismatic = |index: &usize| robot.joint_kind(*index) == JointKind::Prismatic;
-        let number = (0..robot.joints()).find(prismatic).map_or(0, |k| k + 1);
-        let found = format!(
-            "joint {number} of `{}`, which slides without end",
-            robot.name
-        );
-        let expected = "physical limits of every prismatic joint";
-        let help = "add `lower` and `upper` to `[physical_limits]` of the robot file";
-        return refusal(design, message, found, expected, help);
-    }
     None
 }
 
-/// Physical limits of joint 1 would make every other joint's test depend on β, which the study of
-/// one pose does not do.
-fn physical_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
-    let design = &file.design.place;
-    let message = CANNOT_TRACE;
-    let limits = robot.physical_limits.as_ref();
-    if limits.is_some_and(|limits| limits.upper[0] - limits.lower[0] < TAU - 1e-9) {
-        let found = format!("the robot `{}` with physical limits of joint 1", robot.name);
-        let expected = "a joint 1 that turns freely, or limits that are 360° apart";
-        let help = "write [-180, 180] for joint 1: the turn of the whole arm is then not limited";
-        return refusal(design, message, found, expected, help);
+/// Joint 1 turns.
+fn first_joint_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    if robot.joint_kind(0) == JointKind::Revolute {
+        return None;
     }
-    None
+    let found = format!("the robot `{}`, whose joint 1 is prismatic", robot.name);
+    let expected = "a revolute joint 1, about which the workspace is turned";
+    let help = "choose a robot whose joint 1 turns; the estimator \"hybrid\" serves the others";
+    refusal(&file.design.place, CANNOT_TRACE, found, expected, help)
+}
+
+/// A stroke sets the scale of every prismatic joint.
+fn stroke_refusal<'f>(file: &'f StudyFile, robot: &Robot) -> Option<Refusal<'f>> {
+    if joint_scales(robot).is_some() {
+        return None;
+    }
+    let prismatic = |index: &usize| robot.joint_kind(*index) == JointKind::Prismatic;
+    let number = (0..robot.joints()).find(prismatic).map_or(0, |k| k + 1);
+    let found = format!(
+        "joint {number} of `{}`, which slides without end",
+        robot.name
+    );
+    let expected = "physical limits of every prismatic joint";
+    let help = "add `lower` and `upper` to `[physical_limits]` of the robot file";
+    refusal(&file.design.place, CANNOT_TRACE, found, expected, help)
 }
 
 /// Link lengths are searched with the exact estimator alone, radii likewise.

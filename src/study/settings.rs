@@ -130,6 +130,9 @@ pub struct ManifoldSearch {
     pub seeds: u64,
     /// Residual of the vertices, share of the robot's size, default 1e-6.
     pub residual: f64,
+    /// With more than one degree of redundancy: values of every joint that slices hold, default 32.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub slices: Option<u64>,
 }
 
 /// Artificial limits as files have them: lower ≤ upper, joint 1 first.
@@ -343,6 +346,7 @@ impl Default for ManifoldSearch {
         ManifoldSearch {
             seeds: SearchSettings::default().least_seeds as u64,
             residual: 1e-6,
+            slices: None,
         }
     }
 }

@@ -20,23 +20,27 @@ pub(super) struct PlanarPicture {
 }
 
 impl Picture {
-    /// The workspace for `limits` (internal joint variables) over `atlas`.
+    /// The workspace for `limits` (internal joint variables) over `atlas`; none where samples stand
+    /// for themselves: maps show what is turned about joint 1's axis.
     pub fn of(
         atlas: &Atlas,
         robot: &Robot,
         limits: &ArtificialLimits,
         failures: &FailureSet,
-    ) -> Picture {
+    ) -> Option<Picture> {
+        if !atlas.plan().sampling.uses_turns() {
+            return None;
+        }
         let Ok(chain) = robot.planar_chain() else {
-            return Picture::Spatial(atlas.share_map(limits, failures));
+            return Some(Picture::Spatial(atlas.share_map(limits, failures)));
         };
         let pairs = limits.joints().iter().zip(&chain.angle_offsets);
         let between: Vec<JointLimit> = pairs.map(|(limit, &by)| limit.shifted(by)).collect();
-        Picture::Planar(Box::new(PlanarPicture {
+        Some(Picture::Planar(Box::new(PlanarPicture {
             map: atlas.planar_map(limits, failures),
             limits: ArtificialLimits::new(between),
             links: chain.lengths,
-        }))
+        })))
     }
 
     /// The map of a spatial task.

@@ -189,7 +189,11 @@ fn manifolds(file: &StudyFile, problems: &Problems, design: &Design) -> Option<M
             Some(table) => Some(limits::check(table, problems, &design.robot)?),
             None => None,
         },
-        search: pose_table::search(search),
+        search: pose_table::search(
+            search,
+            design.robot.degree_of_redundancy(file.space.value),
+            problems,
+        ),
     })
 }
 
@@ -210,7 +214,7 @@ fn singular(
         }
         Kind::LargestManifold => {
             refuse_tables(file, problems, "largest-manifold");
-            serve::check_manifolds(file, problems, &design.robot);
+            serve::check_curves(file, problems, &design.robot);
             let largest = file.largest.as_ref().map(|item| item.value.clone());
             Some(Question::LargestManifold(LargestManifold {
                 singularities,
@@ -219,7 +223,7 @@ fn singular(
         }
         _ => {
             refuse_tables(file, problems, "failure-experiment");
-            serve::check_manifolds(file, problems, &design.robot);
+            serve::check_curves(file, problems, &design.robot);
             let Some(table) = &file.failure else {
                 report_missing_goals(problems);
                 return None;

@@ -1,6 +1,6 @@
 //! Artificial joint limits and the joints prone to failure.
 
-use crate::angle::{Arc, turn};
+use crate::angle::{AngleSet, Arc, turn};
 use serde::{Deserialize, Serialize};
 use std::f64::consts::{PI, TAU};
 
@@ -123,6 +123,26 @@ impl ArtificialLimits {
     pub fn from_degrees(pairs: &[[f64; 2]]) -> ArtificialLimits {
         let joint = |p: &[f64; 2]| JointLimit::new(p[0].to_radians(), p[1].to_radians());
         ArtificialLimits::new(pairs.iter().map(joint).collect())
+    }
+
+    /// The limits cut to physical ones, joint by joint. Where two pieces are left, the longer one.
+    pub fn within(&self, physical: &[Arc]) -> ArtificialLimits {
+        let cut = |(limit, physical): (&JointLimit, &Arc)| {
+            if physical.is_full() {
+                return *limit;
+            }
+            let both = AngleSet::from(limit.arc()).intersection(&AngleSet::from(*physical));
+            let longest = both
+                .arcs()
+                .iter()
+                .reduce(|a, b| if b.width() > a.width() { b } else { a });
+            match longest {
+                Some(arc) => JointLimit::new(arc.start(), arc.end()),
+                // Nothing is left: the joint stands at a physical limit.
+                None => JointLimit::new(physical.start(), physical.start()),
+            }
+        };
+        ArtificialLimits::new(self.joints.iter().zip(physical).map(cut).collect())
     }
 
     /// Limits of each joint, joint 1 first.

@@ -5,14 +5,27 @@
 //! A₂ × … × A_n, a pose turned by β about joint 1 is reached before a failure if β ∈ A₁ − T, after
 //! a lock of joint 1 if A₁ − β ⊂ Θ₁, and after a lock of joint i ≥ 2 if A_i ⊂ Θ_i; a margin enlarges
 //! the A_i of the latter two, where joints lock.
+//!
+//! Physical limits P₁ of joint 1 make the last condition depend on β: after the turn joint i may
+//! lock at a exactly if T_i(a) + β meets P₁, with T_i(a) the θ₁ values at which θ_i = a.
 
 use super::{ArtificialLimits, FailureSet};
 use crate::angle::{AngleSet, Arc};
-use crate::manifold::{PreImage, SelfMotionManifold, runs_inside};
+use crate::manifold::{
+    PreImage, SelfMotionManifold, Surface, SurfaceEvidence, runs_in_box, runs_inside,
+};
+use rayon::prelude::*;
 
 /// Parts of a segment between which a curve is looked at. A segment is at most 0.4 rad long, so
 /// that what is overlooked inside a part is below 1e-5 rad.
 const PARTS: usize = 64;
+
+/// Where joint 1 has physical limits, locks at angles this far apart are examined, radians: on
+/// curves; on surfaces, where each one takes slices of its own.
+const LOCK_STEPS: [f64; 2] = [0.005, 0.02];
+
+/// Parts of a segment between which a curve is looked at for one of these locks.
+const LOCK_PARTS: usize = 8;
 
 /// Which failures a pose survives.
 #[derive(Clone, Debug, PartialEq)]
@@ -22,88 +35,204 @@ pub struct PoseTolerance {
     /// Rotations β after which the pose is reached wherever joint 1 locks inside its limits.
     pub after_lock_of_1: AngleSet,
     /// Whether the pose is reached wherever each joint locks inside its limits, joint 1 first;
-    /// that of joint 1 without a rotation.
+    /// without a rotation.
     pub survives: Vec<bool>,
     /// Rotations β after which the pose belongs to the fault-tolerant workspace.
     pub rotation_set: AngleSet,
 }
 
+/// The sets of one pre-image that its tolerance follows from.
+struct Sets<'a> {
+    /// Θ, inside the physical limits of the joints from 2 on.
+    ranges: &'a [AngleSet],
+    /// The same inside those of joint 1 as well.
+    at_rest: &'a [AngleSet],
+    /// T.
+    image: &'a AngleSet,
+    /// T_i(a) of joint i (from 0).
+    image_where: &'a (dyn Fn(usize, f64) -> AngleSet + Sync),
+    /// Distance of the a that are examined.
+    lock_step: f64,
+}
+
 impl PoseTolerance {
     /// Judges the pose with the given pre-image. `physical` holds the physical limits of every
-    /// joint as arcs of internal joint variables; those of joint 1 only bound where it may lock.
+    /// joint as arcs of internal joint variables; artificial limits are cut to them.
     pub fn of(
         pre_image: &PreImage,
         physical: &[Arc],
         limits: &ArtificialLimits,
         failures: &FailureSet,
     ) -> PoseTolerance {
-        let arcs: Vec<Arc> = limits.joints().iter().map(|limit| limit.arc()).collect();
-        let locks: Vec<Arc> = limits
-            .joints()
-            .iter()
-            .zip(physical)
-            .map(|(limit, physical)| limit.enlarged_within(failures.margin(), physical).arc())
-            .collect();
-        let ranges = ranges_within(&pre_image.manifolds, physical);
-        let both: Vec<[Arc; 2]> = arcs.iter().zip(physical).map(|(a, p)| [*a, *p]).collect();
-        let inside = images(&pre_image.manifolds, &both);
-        let before_failure = inside[0].mirrored().sum(&arcs[0]);
-        let after_lock_of_1 = ranges[0].erosion(&locks[0]).mirrored();
-        let mut survives: Vec<bool> = ranges
-            .iter()
-            .zip(&locks)
-            .map(|(range, arc)| range.contains_arc(arc))
-            .collect();
-        survives[0] = after_lock_of_1.contains(0.0);
-        let rest = (1..survives.len()).all(|k| survives[k] || !failures.contains(k + 1));
-        let rotation_set = match (rest, failures.contains(1)) {
-            (false, _) => AngleSet::empty(),
-            (true, true) => before_failure.intersection(&after_lock_of_1),
-            (true, false) => before_failure.clone(),
+        let manifolds = &pre_image.manifolds;
+        let turning = but_joint_1(physical);
+        let image = ranges_within(manifolds, &box_of(&limits.within(physical)));
+        let sets = Sets {
+            ranges: &ranges_within(manifolds, &turning),
+            at_rest: &ranges_within(manifolds, physical),
+            image: &image[0],
+            image_where: &|joint, value| image_where(manifolds, joint, value, &turning),
+            lock_step: LOCK_STEPS[0],
         };
-        PoseTolerance {
-            before_failure,
-            after_lock_of_1,
-            survives,
-            rotation_set,
-        }
+        judge(&sets, physical, limits, failures)
+    }
+
+    /// Judges the pose whose pre-image is `surface` and whose joints have the ranges `at_rest`
+    /// inside the physical limits; tells also what random starts inside the artificial limits say
+    /// about T.
+    pub fn of_surface(
+        surface: &mut Surface<'_>,
+        at_rest: &[AngleSet],
+        limits: &ArtificialLimits,
+        failures: &FailureSet,
+    ) -> (PoseTolerance, SurfaceEvidence) {
+        let physical = surface.physical();
+        let turning = but_joint_1(physical);
+        let ranges = match physical[0].is_full() {
+            true => at_rest.to_vec(),
+            false => surface.ranges(&turning),
+        };
+        let inner = box_of(&limits.within(physical));
+        let image = surface.range(0, &inner);
+        let evidence = surface.evidence(&[0], std::slice::from_ref(&image), &inner);
+        let surface = &*surface;
+        let sets = Sets {
+            ranges: &ranges,
+            at_rest,
+            image: &image,
+            image_where: &|joint, value| surface.range_where(0, (joint, value), &turning),
+            lock_step: LOCK_STEPS[1],
+        };
+        (judge(&sets, physical, limits, failures), evidence)
     }
 }
 
-/// Whether all joints from 2 on lie in all their arcs.
-fn is_inside<const K: usize>(theta: &[f64], arcs: &[[Arc; K]]) -> bool {
-    let joints = theta.iter().zip(arcs).skip(1);
-    joints
-        .flat_map(|(angle, arcs)| arcs.iter().map(move |arc| (angle, arc)))
+fn judge(
+    sets: &Sets<'_>,
+    physical: &[Arc],
+    limits: &ArtificialLimits,
+    failures: &FailureSet,
+) -> PoseTolerance {
+    let limits = limits.within(physical);
+    let first = limits.joints()[0].arc();
+    let locks: Vec<Arc> = limits
+        .joints()
+        .iter()
+        .zip(physical)
+        .map(|(limit, physical)| limit.enlarged_within(failures.margin(), physical).arc())
+        .collect();
+    let before_failure = sets.image.mirrored().sum(&first);
+    let after_lock_of_1 = sets.ranges[0].erosion(&locks[0]).mirrored();
+    let survived_at = |joint: usize| match sets.ranges[joint].contains_arc(&locks[joint]) {
+        false => AngleSet::empty(),
+        true if physical[0].is_full() => AngleSet::full(),
+        true => survived(sets, joint, &locks[joint], &physical[0]),
+    };
+    let mut survives = vec![after_lock_of_1.contains(0.0)];
+    let mut rotation_set = match failures.contains(1) {
+        true => before_failure.intersection(&after_lock_of_1),
+        false => before_failure.clone(),
+    };
+    for (joint, lock) in locks.iter().enumerate().skip(1) {
+        let set = survived_at(joint);
+        survives.push(sets.at_rest[joint].contains_arc(lock) && set.contains(0.0));
+        if failures.contains(joint + 1) {
+            rotation_set = rotation_set.intersection(&set);
+        }
+    }
+    PoseTolerance {
+        before_failure,
+        after_lock_of_1,
+        survives,
+        rotation_set,
+    }
+}
+
+/// Rotations after which joint `joint` may lock anywhere in `lock` with joint 1 inside `allowed`.
+fn survived(sets: &Sets<'_>, joint: usize, lock: &Arc, allowed: &Arc) -> AngleSet {
+    let steps = (lock.width() / sets.lock_step).ceil().max(1.0) as usize;
+    let survived_at = |k: usize| {
+        let image =
+            (sets.image_where)(joint, lock.start() + lock.width() * k as f64 / steps as f64);
+        // A ⊂ Θ says that the angle is taken: at an end of Θ, the curve may turn within round-off
+        // of it.
+        match image.is_empty() {
+            true => AngleSet::full(),
+            false => image.mirrored().sum(allowed),
+        }
+    };
+    let each: Vec<AngleSet> = (0..steps + 1).into_par_iter().map(survived_at).collect();
+    each.iter()
+        .fold(AngleSet::full(), |all, set| all.intersection(set))
+}
+
+/// All arcs, but joint 1's the full circle.
+fn but_joint_1(arcs: &[Arc]) -> Vec<Arc> {
+    let mut arcs = arcs.to_vec();
+    arcs[0] = Arc::FULL;
+    arcs
+}
+
+/// C′_A: the limits with joint 1 released.
+fn box_of(limits: &ArtificialLimits) -> Vec<Arc> {
+    let arcs: Vec<Arc> = limits.joints().iter().map(|limit| limit.arc()).collect();
+    but_joint_1(&arcs)
+}
+
+fn is_inside(theta: &[f64], arcs: &[Arc]) -> bool {
+    theta
+        .iter()
+        .zip(arcs)
         .all(|(angle, arc)| arc.contains(*angle))
 }
 
-/// Θ: the angles of every joint over the parts of `manifolds` inside the physical limits of the
-/// joints from 2 on, given as arcs of internal joint variables, one per joint.
-pub fn ranges_within(manifolds: &[SelfMotionManifold], physical: &[Arc]) -> Vec<AngleSet> {
-    let bounds: Vec<[Arc; 1]> = physical.iter().map(|arc| [*arc]).collect();
-    images(manifolds, &bounds)
-}
-
-/// The angles of every joint over the parts of `manifolds` at which the joints from 2 on lie in
-/// all their arcs.
-fn images<const K: usize>(manifolds: &[SelfMotionManifold], bounds: &[[Arc; K]]) -> Vec<AngleSet> {
-    let mut arcs: Vec<Vec<Arc>> = vec![Vec::new(); bounds.len()];
+/// Θ: the angles of every joint over the parts of `manifolds` inside `arcs` of internal joint
+/// variables, one per joint.
+pub fn ranges_within(manifolds: &[SelfMotionManifold], arcs: &[Arc]) -> Vec<AngleSet> {
+    let mut swept: Vec<Vec<Arc>> = vec![Vec::new(); arcs.len()];
     for manifold in manifolds {
-        for run in runs_inside(manifold, PARTS, &|theta: &[f64]| is_inside(theta, bounds)) {
-            for (arcs, [low, high]) in arcs.iter_mut().zip(run.spans) {
-                arcs.push(Arc::from_interval(low, high));
+        for run in runs_in_box(manifold, PARTS, arcs) {
+            let is_whole = run.ends.is_empty();
+            for (joint, [low, high]) in run.spans.into_iter().enumerate() {
+                swept[joint].push(match is_whole && manifold.winding[joint] != 0 {
+                    true => Arc::FULL,
+                    false => Arc::from_interval(low, high),
+                });
             }
         }
     }
-    arcs.into_iter().map(AngleSet::from_arcs).collect()
+    swept.into_iter().map(AngleSet::from_arcs).collect()
+}
+
+/// T_joint(value): the θ₁ at which curves pass `value` inside `bounds`.
+fn image_where(
+    manifolds: &[SelfMotionManifold],
+    joint: usize,
+    value: f64,
+    bounds: &[Arc],
+) -> AngleSet {
+    let half = Arc::new(value, std::f64::consts::PI);
+    let mut found = Vec::new();
+    for manifold in manifolds {
+        let ahead = |theta: &[f64]| half.contains(theta[joint]);
+        for end in runs_inside(manifold, LOCK_PARTS, &ahead)
+            .into_iter()
+            .flat_map(|run| run.ends)
+        {
+            // Half a turn away the curve leaves the half circle too.
+            let is_here = Arc::point(value).contains_within(end[joint], 1e-6);
+            if is_here && is_inside(&end, bounds) {
+                found.push(Arc::point(end[0]));
+            }
+        }
+    }
+    AngleSet::from_arcs(found)
 }
 
 /// The configurations at which a self-motion manifold enters or leaves C′_A, the box of all limits
 /// but joint 1's [S4 §III.B], in internal joint variables unwrapped along the curve.
 pub fn limit_crossings(manifold: &SelfMotionManifold, limits: &ArtificialLimits) -> Vec<Vec<f64>> {
-    let bounds: Vec<[Arc; 1]> = limits.joints().iter().map(|l| [l.arc()]).collect();
-    let runs = runs_inside(manifold, PARTS, &|theta: &[f64]| is_inside(theta, &bounds));
+    let runs = runs_in_box(manifold, PARTS, &box_of(limits));
     runs.into_iter().flat_map(|run| run.ends).collect()
 }
 

@@ -39,6 +39,7 @@ fn figures<'a>(
         limits,
         critical_points: marks.0,
         crossings: marks.1,
+        are_slices: false,
         title: "manifolds & more".into(),
     };
     let in_space = ManifoldFigure3d {

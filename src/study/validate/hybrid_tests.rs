@@ -84,6 +84,11 @@ fn what_hybrid_cannot_serve_is_refused_by_name() {
          lower = [0]\nupper = [1]",
         rows(&[SLIDE, BENT, BENT, BENT])
     );
+    let stroke = "\n[physical_limits]\nlower = [0]\nupper = [1]\nlower_deg";
+    let longer = format!(
+        "{}{stroke} = [0, 0, 0, 0]\nupper_deg = [1, 1, 1, 1]",
+        rows(&[SLIDE, BENT, BENT, BENT, BENT])
+    );
     let limited = format!(
         "{}\n[physical_limits]\nlower_deg = [-170, 0, 0]\nupper_deg = [170, 9, 9]",
         arm(3)
@@ -116,7 +121,9 @@ fn what_hybrid_cannot_serve_is_refused_by_name() {
             "design",
             "joint 3 of `r`, which slides",
         ),
-        (first, "spatial-position", "design", "joint 1 is prismatic"),
+        (first.clone(), "spatial-position", "", ""),
+        (first, "planar-position", "design", "joint 1 is prismatic"),
+        (longer, "spatial-position", "design", "joint 1 is prismatic"),
         (limited, "planar-position", "", ""),
     ];
     for (robot, task, key, found) in cases {

@@ -5,11 +5,11 @@ use super::build::{Focus, Packing, build_block};
 use super::plan::SamplePlan;
 use super::score::{Limits16, Rule};
 use super::store::{AtlasKey, AtlasStore, ShardBytes};
-use crate::angle::{AngleSet, Arc};
-use crate::design::Robot;
+use crate::angle::Arc;
+use crate::design::{JointKind, Robot};
 use crate::kinematics::fixed_transforms;
 use crate::manifold::{CurveSource, ManifoldError, SearchSettings, physical_arcs};
-use crate::workspace::{ArtificialLimits, FailureSet, JointLimit};
+use crate::workspace::{ArtificialLimits, FailureSet};
 use rayon::prelude::*;
 use std::ops::Range;
 use std::path::Path;
@@ -113,12 +113,28 @@ impl AtlasRecipe {
     /// A recipe for the pre-images of `robot` at the samples of `plan`.
     ///
     /// # Errors
-    /// The robot has no curves to trace for this task.
+    /// The robot has no curves to trace for this task, or joint 1 slides and samples do not lie
+    /// everywhere.
     pub fn new(
         robot: &Robot,
         plan: SamplePlan,
         settings: AtlasSettings,
     ) -> Result<AtlasRecipe, ManifoldError> {
+        let slides = robot.joint_kind(0) == JointKind::Prismatic;
+        let turns = plan.sampling.uses_turns();
+        let degree = robot.degree_of_redundancy(plan.task);
+        if slides && turns {
+            return Err(ManifoldError::NoSymmetry);
+        }
+        // Surfaces are cut without regard to limits of joint 1.
+        if !turns && degree > 1 {
+            return Err(ManifoldError::Redundancy {
+                joints: robot.joints(),
+                dimension: plan.task.dimension(),
+                degree,
+                wanted: "1 without a joint 1 that turns",
+            });
+        }
         Ok(AtlasRecipe {
             source: CurveSource::new(robot, plan.task, settings.slices, settings.search)?,
             packing: Packing {
@@ -135,12 +151,13 @@ impl AtlasRecipe {
     /// The same, but for scoring `limits` alone: the atlas is small, and with more than one
     /// degree of redundancy its images have their exact ends, which lie on the faces of the box.
     ///
-    /// Physical limits of joint 1 need the whole pre-image: then this changes nothing.
+    /// Physical limits of joint 1 need the whole pre-image, and so do samples that stand for
+    /// themselves: then this changes nothing.
     pub fn focused(mut self, limits: &ArtificialLimits) -> AtlasRecipe {
-        if !self.packing.physical[0].is_full() {
+        if !self.packing.physical[0].is_full() || !self.plan.sampling.uses_turns() {
             return self;
         }
-        let limits = within(limits, &self.packing.physical);
+        let limits = limits.within(&self.packing.physical);
         let ends = limits.joints().iter().map(|limit| {
             let is_free = limit.is_full();
             (!is_free).then_some([limit.lower, limit.upper])
@@ -322,26 +339,6 @@ impl AtlasRecipe {
     }
 }
 
-fn within(limits: &ArtificialLimits, physical: &[Arc]) -> ArtificialLimits {
-    let cut = |(limit, physical): (&JointLimit, &Arc)| {
-        if physical.is_full() {
-            return *limit;
-        }
-        let both = AngleSet::from(limit.arc()).intersection(&AngleSet::from(*physical));
-        let longest = both
-            .arcs()
-            .iter()
-            .reduce(|a, b| if b.width() > a.width() { b } else { a });
-        match longest {
-            Some(arc) => JointLimit::new(arc.start(), arc.end()),
-            // Nothing is left: the joint stands at a physical limit.
-            None => JointLimit::new(physical.start(), physical.start()),
-        }
-    };
-    let pairs = limits.joints().iter().zip(physical);
-    ArtificialLimits::new(pairs.map(cut).collect())
-}
-
 impl Atlas {
     /// Limits prepared for this atlas.
     pub(super) fn limits(
@@ -351,7 +348,8 @@ impl Atlas {
         rule: Rule,
     ) -> Limits16 {
         let limits = &self.within_physical(limits);
-        Limits16::new(limits, failures, rule, &self.slabs, &self.physical)
+        let turns = self.plan.sampling.uses_turns();
+        Limits16::new(limits, failures, rule, (&self.slabs, &self.physical), turns)
     }
 
     /// Whether no joint has physical limits.
@@ -362,7 +360,7 @@ impl Atlas {
     /// The limits cut to the physical ones, joint by joint. Where two pieces are left, the
     /// longer one.
     pub fn within_physical(&self, limits: &ArtificialLimits) -> ArtificialLimits {
-        within(limits, &self.physical)
+        limits.within(&self.physical)
     }
 
     /// What was sampled.

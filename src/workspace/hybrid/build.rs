@@ -40,7 +40,7 @@ pub(super) fn build_block(
     plan: &SamplePlan,
     indices: impl Iterator<Item = u64>,
 ) -> BlockBuilder {
-    let mut packer = Packer::new(source.joints(), packing);
+    let mut packer = Packer::new(source.joints(), packing, plan);
     let mut batch = Vec::with_capacity(CurveSource::BATCH);
     for index in indices {
         let sample = plan.sample(index);
@@ -65,7 +65,8 @@ struct Packer {
     joints: usize,
     block: BlockBuilder,
     line: Polyline,
-    /// Physical limits of the joints from 2 on. Those of joint 1 depend on β: see `score`.
+    /// Physical limits of the joints from 2 on; those of joint 1 depend on β where a sample stands
+    /// for its circle (see `score`), else they are here too.
     inner: Box16,
     /// The box of the focus, if there is one.
     focus: Option<Box16>,
@@ -80,10 +81,11 @@ struct Packer {
 }
 
 impl Packer {
-    fn new(joints: usize, packing: &Packing) -> Packer {
+    fn new(joints: usize, packing: &Packing, plan: &SamplePlan) -> Packer {
+        let turns = usize::from(plan.sampling.uses_turns());
         let arcs = |arcs: &[Arc]| {
             let arcs: Vec<_> = arcs.iter().map(Arc16::nearest).collect();
-            Box16::new(arcs.into_iter().enumerate().skip(1))
+            Box16::new(arcs.into_iter().enumerate().skip(turns))
         };
         let focus = packing.focus.as_ref().map(|focus| {
             let limits = focus.limits.joints().iter();

@@ -5,6 +5,9 @@
 //! A sample stands for its whole circle: the size of a workspace is Σ w |B|, where |B| is the
 //! measure of the rotation angles β at which the turned sample belongs to it, and w is the
 //! sample's share of r dr dz times the volume of orientations (2π in the plane, π² in space).
+//!
+//! A joint 1 that slides turns nothing. Task points are then taken at all azimuths
+//! ([`Sampling::Everywhere`]), and each stands for itself: |B| is 2π or 0.
 
 use crate::design::TaskSpace;
 use crate::sampling::{Lattice, rotation, stream};
@@ -48,6 +51,21 @@ pub enum Sampling {
         /// Independent shifts, whose scatter gives the standard error.
         replicates: u32,
     },
+    /// The lattice over positions at all azimuths: needed where joint 1 slides, so that no turn
+    /// leaves the pre-image as it is.
+    Everywhere {
+        /// Samples in all.
+        samples: u32,
+        /// Independent shifts, whose scatter gives the standard error.
+        replicates: u32,
+    },
+}
+
+impl Sampling {
+    /// Whether a sample stands for all task points on its circle about joint 1's axis.
+    pub fn uses_turns(&self) -> bool {
+        !matches!(self, Sampling::Everywhere { .. })
+    }
 }
 
 /// All samples of an estimate. A sample depends on its number alone.
@@ -63,10 +81,10 @@ pub struct SamplePlan {
     pub seed: u64,
 }
 
-/// One task point at azimuth 0.
+/// One task point, at azimuth 0 unless samples lie everywhere.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
-    /// Tool pose in the frame of joint 1, at y = 0 and x = r ≥ 0.
+    /// Tool pose in the frame of joint 1; at azimuth 0, y = 0 and x = r ≥ 0.
     pub tool: Isometry3<f64>,
     /// Its weight: the size of a workspace is Σ weight · |B|.
     pub weight: f64,
@@ -89,6 +107,10 @@ impl SamplePlan {
             Sampling::Lattice {
                 samples,
                 replicates,
+            }
+            | Sampling::Everywhere {
+                samples,
+                replicates,
             } => u64::from(samples / replicates.max(1)) * u64::from(replicates),
         }
     }
@@ -105,7 +127,9 @@ impl SamplePlan {
                 let [columns, rows] = self.cells();
                 (columns * rows) as u32
             }
-            Sampling::Lattice { replicates, .. } => replicates,
+            Sampling::Lattice { replicates, .. } | Sampling::Everywhere { replicates, .. } => {
+                replicates
+            }
         }
     }
 
@@ -137,7 +161,7 @@ impl SamplePlan {
     pub fn cell_side(&self) -> f64 {
         match self.sampling {
             Sampling::Grid { cell, .. } => cell * self.region.reach,
-            Sampling::Lattice { .. } => 0.0,
+            Sampling::Lattice { .. } | Sampling::Everywhere { .. } => 0.0,
         }
     }
 
@@ -158,6 +182,10 @@ impl SamplePlan {
                 samples,
                 replicates,
             } => self.lattice_sample(index, samples / replicates.max(1)),
+            Sampling::Everywhere {
+                samples,
+                replicates,
+            } => self.sample_anywhere(index, samples / replicates.max(1)),
         }
     }
 
@@ -180,7 +208,7 @@ impl SamplePlan {
         };
         let turn: [f64; 3] = std::array::from_fn(|_| rng.random());
         Sample {
-            tool: self.tool(r, z, turn),
+            tool: self.tool([r, 0.0, z], turn),
             weight: r * area * self.orientation_volume() / f64::from(orientations),
             stratum,
         }
@@ -217,13 +245,54 @@ impl SamplePlan {
         };
         let samples = u64::from(each) * u64::from(self.strata());
         Sample {
-            tool: self.tool(r, z, turn),
+            tool: self.tool([r, 0.0, z], turn),
             weight: area * self.orientation_volume() / samples as f64,
             stratum: replicate as u32,
         }
     }
 
-    fn tool(&self, r: f64, z: f64, turn: [f64; 3]) -> Isometry3<f64> {
+    /// As [`SamplePlan::lattice_sample`], with the azimuth as one more dimension.
+    fn sample_anywhere(&self, index: u64, each: u32) -> Sample {
+        let (replicate, number) = (index / u64::from(each), index % u64::from(each));
+        let mut rng = stream(self.seed, replicate);
+        let region = &self.region;
+        let (place, height, turn) = match self.task {
+            TaskSpace::PlanarPosition => {
+                let [a, b] = Lattice::<2>::random(&mut rng).point(number);
+                ([a, b], 0.0, [0.0; 3])
+            }
+            TaskSpace::PlanarPose => {
+                let [a, b, t] = Lattice::<3>::random(&mut rng).point(number);
+                ([a, b], 0.0, [t, 0.0, 0.0])
+            }
+            TaskSpace::SpatialPosition => {
+                let [a, b, c] = Lattice::<3>::random(&mut rng).point(number);
+                ([a, b], c, [0.0; 3])
+            }
+            TaskSpace::SpatialPose => {
+                let [a, b, c, s, t, u] = Lattice::<6>::random(&mut rng).point(number);
+                ([a, b], c, [s, t, u])
+            }
+        };
+        let r = region.radius * place[0].sqrt();
+        let (sine, cosine) = (TAU * place[1]).sin_cos();
+        let half_disc = 0.5 * region.radius * region.radius;
+        let (z, area) = match self.task.is_planar() {
+            true => (0.0, half_disc),
+            false => {
+                let tall = region.upper - region.lower;
+                (region.lower + tall * height, half_disc * tall)
+            }
+        };
+        let samples = u64::from(each) * u64::from(self.strata());
+        Sample {
+            tool: self.tool([r * cosine, r * sine, z], turn),
+            weight: area * self.orientation_volume() / samples as f64,
+            stratum: replicate as u32,
+        }
+    }
+
+    fn tool(&self, [x, y, z]: [f64; 3], turn: [f64; 3]) -> Isometry3<f64> {
         let rotation = match self.task {
             TaskSpace::SpatialPose => rotation(turn),
             TaskSpace::PlanarPose => {
@@ -231,7 +300,7 @@ impl SamplePlan {
             }
             _ => UnitQuaternion::identity(),
         };
-        Isometry3::from_parts(Translation3::new(r, 0.0, z), rotation)
+        Isometry3::from_parts(Translation3::new(x, y, z), rotation)
     }
 }
 
@@ -265,7 +334,11 @@ mod tests {
             orientations: 2,
             centres: true,
         };
-        for sampling in [lattice, grid] {
+        let everywhere = Sampling::Everywhere {
+            samples: 1000,
+            replicates: 4,
+        };
+        for sampling in [lattice, grid, everywhere] {
             for (task, volume) in [
                 (TaskSpace::PlanarPosition, 4.0 * PI),
                 (TaskSpace::PlanarPose, 8.0 * PI * PI),
@@ -295,5 +368,26 @@ mod tests {
             assert!((-1.0..=2.0).contains(&p.z));
             assert!(plan.sample(index).stratum < plan.strata());
         }
+    }
+
+    /// Samples everywhere fill the cylinder evenly: each octant of it alike.
+    #[test]
+    fn samples_everywhere_have_all_azimuths() {
+        let sampling = Sampling::Everywhere {
+            samples: 4000,
+            replicates: 4,
+        };
+        let plan = plan(TaskSpace::SpatialPosition, sampling);
+        let mut octants = [0; 8];
+        for index in 0..plan.len() {
+            let p = plan.sample(index).tool.translation;
+            assert!(p.x.hypot(p.y) <= 2.0 && (-1.0..=2.0).contains(&p.z));
+            let signs = [p.x > 0.0, p.y > 0.0, p.z > 0.5];
+            octants[signs.iter().fold(0, |k, &sign| 2 * k + usize::from(sign))] += 1;
+        }
+        assert!(
+            octants.iter().all(|&count: &i32| (count - 500).abs() < 25),
+            "{octants:?}"
+        );
     }
 }

@@ -18,8 +18,8 @@ use std::f64::consts::TAU;
 
 impl Atlas {
     /// S_F for `limits` with those of `joint` (from 0) replaced by every width of `widths`
-    /// (radians, ascending, in [0, 2π]); `None` for robots with physical limits, which have to be
-    /// scored one by one.
+    /// (radians, ascending, in [0, 2π]); `None` for robots with physical limits and for samples that
+    /// stand for themselves, which have to be scored one by one.
     pub fn profile(
         &self,
         limits: &ArtificialLimits,
@@ -28,7 +28,7 @@ impl Atlas {
         growth: Growth,
         widths: &[f64],
     ) -> Option<Vec<f64>> {
-        if !self.is_free() {
+        if !self.is_free() || !self.plan.sampling.uses_turns() {
             return None;
         }
         let fixed = self.limits(limits, failures, Rule::Definition);

@@ -8,6 +8,9 @@
 //! - before a failure: B₀ = A₁ − T with T the θ₁-image of M inside A₂ × … × A_n;
 //! - B = B₀ ∩ B₁ if every i ≥ 2 passes.
 //!
+//! Where joint 1 slides there is no β: a sample stands for itself, joint 1 is a joint like the others,
+//! and B is everything or nothing.
+//!
 //! The papers take one minimum and maximum of θ₁ per manifold for T, which over-counts where a
 //! manifold leaves the box and returns; [`Rule::Paper`] does so for comparison.
 
@@ -43,8 +46,10 @@ pub(super) struct Limits16 {
     pub first_lock: Arc,
     /// Margin beyond the limits, radians.
     pub margin: f64,
-    /// The box of the other joints.
+    /// The box of the other joints; of all, where a sample stands for itself.
     pub rest: Box16,
+    /// Whether a sample stands for its circle about joint 1's axis.
+    turns: bool,
     /// Which joints may lock.
     pub prone: Vec<bool>,
     pub rule: Rule,
@@ -64,13 +69,13 @@ struct Physical {
 impl Limits16 {
     /// `slabs` is half the distance between slices along every joint: a slice stands for that
     /// much to either side, so the box is widened by it. `physical` holds the physical limits of
-    /// every joint, inside which `limits` lie.
+    /// every joint, inside which `limits` lie. `turns` tells that a sample stands for its circle.
     pub fn new(
         limits: &ArtificialLimits,
         failures: &FailureSet,
         rule: Rule,
-        slabs: &[f64],
-        physical: &[Arc],
+        (slabs, physical): (&[f64], &[Arc]),
+        turns: bool,
     ) -> Limits16 {
         let margin = failures.margin();
         let locks = limits.joints().iter().zip(physical);
@@ -85,7 +90,7 @@ impl Limits16 {
             let arc = limit.arc();
             Arc16::nearest(&Arc::new(arc.start() - slab, arc.width() + 2.0 * slab))
         });
-        let rest = Box16::new(widened.enumerate().skip(1));
+        let rest = Box16::new(widened.enumerate().skip(usize::from(turns)));
         Limits16 {
             prone: (1..=locks.len())
                 .map(|joint| failures.contains(joint))
@@ -95,10 +100,11 @@ impl Limits16 {
             first,
             margin,
             rest,
+            turns,
             rule,
             physical: physical
                 .first()
-                .filter(|arc| !arc.is_full())
+                .filter(|arc| turns && !arc.is_full())
                 .map(|&arc| Physical {
                     allowed: arc,
                     gap: Arc::new(arc.end(), TAU - arc.width()),
@@ -163,7 +169,11 @@ impl Limits16 {
     /// Whether some β lets all angles at which joint 1 may lock lie in Θ₁, or joint 1 does not lock.
     #[inline]
     pub fn first_fits(&self, range: &[Arc16]) -> bool {
-        !self.prone[0] || fits_somewhere(self.locks[0], range)
+        !self.prone[0]
+            || match self.turns {
+                true => fits_somewhere(self.locks[0], range),
+                false => covers(range, self.locks[0]),
+            }
     }
 
     /// T: the θ₁ values of the pre-image inside the limits of the other joints.
@@ -190,12 +200,18 @@ impl Limits16 {
 
     /// B₁, with Θ₁ the range of joint 1.
     pub fn lock_of_1(&self, range: &[Arc16]) -> AngleSet {
+        if !self.turns {
+            return all_or_nothing(covers(range, self.locks[0]));
+        }
         // β passes if A₁ − β ⊂ Θ₁: the mirror image of the erosion of Θ₁ by A₁.
         angle_set(range).erosion(&self.first_lock).mirrored()
     }
 
     /// B₀, with T the image.
     pub fn before_failure(&self, image: &AngleSet) -> AngleSet {
+        if !self.turns {
+            return all_or_nothing(!image.is_empty());
+        }
         image.mirrored().sum(&self.first)
     }
 
@@ -206,12 +222,7 @@ impl Limits16 {
         }
         let pose = &view.poses[index];
         if self.is_free_of_joint_1() {
-            let inside = self.is_ever_inside(view, pose);
-            return if inside {
-                AngleSet::full()
-            } else {
-                AngleSet::empty()
-            };
+            return all_or_nothing(self.is_ever_inside(view, pose));
         }
         let before = self.before_failure(&self.image(view.joints, view.pieces(pose)));
         let after = self.after_lock_of_1(view.ranges(index).next().unwrap_or_default());
@@ -239,10 +250,10 @@ impl Limits16 {
         before.overlap(&after)
     }
 
-    /// Whether joint 1 may turn freely: then B is all or nothing. (If it may lock, the test of
-    /// [`Limits16::survives_locks`] has found Θ₁ full.)
+    /// Whether B is all or nothing: joint 1 may turn freely (if it may lock, the test of
+    /// [`Limits16::survives_locks`] has found Θ₁ full), or there is nothing to turn.
     pub fn is_free_of_joint_1(&self) -> bool {
-        self.first.is_full()
+        !self.turns || self.first.is_full()
     }
 
     /// Whether any part of the pre-image lies in the box of the joints from 2 on.
@@ -251,6 +262,13 @@ impl Limits16 {
             || view
                 .pieces(pose)
                 .any(|piece| self.rest.meets(piece, view.joints))
+    }
+}
+
+fn all_or_nothing(all: bool) -> AngleSet {
+    match all {
+        true => AngleSet::full(),
+        false => AngleSet::empty(),
     }
 }
 

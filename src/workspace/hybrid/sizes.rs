@@ -106,7 +106,9 @@ impl Atlas {
     fn estimate(&self, strata: &[[f64; 2]]) -> Estimate {
         let value: f64 = strata.iter().map(|sum| sum[0]).sum();
         let variance = match self.plan().sampling {
-            Sampling::Lattice { .. } => replicate_variance(strata, value),
+            Sampling::Lattice { .. } | Sampling::Everywhere { .. } => {
+                replicate_variance(strata, value)
+            }
             Sampling::Grid {
                 orientations,
                 centres,

@@ -20,6 +20,10 @@ impl SamplePlan {
             Sampling::Lattice {
                 samples,
                 replicates,
+            }
+            | Sampling::Everywhere {
+                samples,
+                replicates,
             } => {
                 let each = u64::from(samples / replicates.max(1)).max(1);
                 index % each < each.div_ceil(every)
