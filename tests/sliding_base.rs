@@ -220,12 +220,12 @@ fn compare(arm: &Arm, samples: u32, boxes: usize) {
         }
         tolerant += counts[0];
     }
-    assert!(tolerant > 3, "{tolerant}");
+    assert!(tolerant > 2, "{tolerant}");
 }
 
 #[test]
 fn a_rail_agrees_with_a_brute_force() {
-    compare(&rail(), 320, 2);
+    compare(&rail(), 320, 1);
 }
 
 #[test]
