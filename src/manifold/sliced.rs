@@ -7,13 +7,16 @@
 use super::any_solver::AnySolver;
 use super::ascent::Ascent;
 use super::extents::{self, Extent};
-use super::solver::SearchSettings;
-use super::source::CurveRef;
+use super::lift::Lift;
+use super::solver::{BATCH, Job, SearchSettings};
+use super::source::{CurveRef, Pose};
 use crate::angle::{AngleSet, Arc};
 use crate::design::TaskSpace;
 use crate::kinematics::{Chain, Goal};
 use nalgebra::Isometry3;
-use rand_chacha::ChaCha8Rng;
+
+/// Slices times task points that are searched together: some tens of megabytes of curves.
+const MOST_AT_ONCE: usize = 512;
 
 /// A family of curves: some joints fixed, the others free.
 #[derive(Clone, Debug)]
@@ -40,6 +43,8 @@ pub(super) struct Sliced {
     pub seeds: usize,
     pub sound: bool,
     extents: Vec<Extent>,
+    /// Where each task point of the batch was first reached; `None` if it is out of reach.
+    landed: Vec<Option<Vec<f64>>>,
     /// Physical limits of every joint.
     bounds: Vec<Arc>,
     /// The walls of their box, if a joint from 2 on has any: the surface inside may lie between
@@ -74,6 +79,7 @@ impl Sliced {
             seeds: 0,
             sound: true,
             extents: Vec::new(),
+            landed: Vec::new(),
             bounds,
             walls: None,
             cut,
@@ -144,28 +150,49 @@ impl Sliced {
         })
     }
 
-    /// Finds the curves of all slices, shows them, and gathers joint ranges. With physical limits
-    /// of joints from 2 on the ranges are empty: see [`Sliced::ranges`].
-    pub fn solve(
+    /// Task points that are best searched at once. All their curves are kept until they are
+    /// shown, so the more slices, the fewer.
+    pub fn batch(&self) -> usize {
+        (MOST_AT_ONCE / self.slices.len().max(1)).clamp(1, BATCH)
+    }
+
+    /// Finds the curves of all slices of many task points; see [`Sliced::show`].
+    pub fn search_all(&mut self, poses: &mut [Pose]) {
+        let starts = self.settings.unreachable_after * 2;
+        self.landed.clear();
+        for (tool, rng) in poses.iter_mut() {
+            // Out of reach of the whole robot: no slice needs to be searched.
+            let whole = Goal::new(&self.chain, tool);
+            self.landed.push(self.ascent.land(&whole, starts, rng));
+        }
+        for slice in &mut self.slices {
+            let pairs = poses.iter_mut().zip(&self.landed);
+            let reached = pairs.filter_map(|(pose, landed)| landed.as_ref().map(|_| pose));
+            slice.search(reached, &self.settings);
+        }
+    }
+
+    /// Shows the curves of task point `index` of the last batch, to be given once more, and gathers
+    /// joint ranges. With physical limits of joints from 2 on the ranges are empty: see
+    /// [`Sliced::ranges`].
+    pub fn show(
         &mut self,
-        tool: &Isometry3<f64>,
-        rng: &mut ChaCha8Rng,
+        index: usize,
+        pose: &mut Pose,
         show: &mut dyn FnMut(CurveRef<'_>),
     ) -> Vec<AngleSet> {
         self.seeds = 0;
         self.sound = true;
         self.extents.clear();
-        let whole = Goal::new(&self.chain, tool);
-        // Out of reach of the whole robot: no slice needs to be searched.
-        let Some(landed) = self
-            .ascent
-            .land(&whole, self.settings.unreachable_after * 2, rng)
-        else {
+        let Some(landed) = self.landed[index].clone() else {
             return vec![AngleSet::empty(); self.joints];
         };
+        // Its place among those within reach.
+        let seat = self.landed[..index].iter().flatten().count();
         let mut slices = std::mem::take(&mut self.slices);
         for slice in &mut slices {
-            self.solve_slice(slice, tool, rng, show);
+            slice.solver.turn_to(seat);
+            self.show_slice(slice, show);
         }
         self.slices = slices;
         if self.extents.is_empty() {
@@ -176,24 +203,17 @@ impl Sliced {
                 .map(|&joint| (joint, landed[joint]))
                 .collect();
             if let Some(mut slice) = self.slice(&fixed) {
-                self.solve_slice(&mut slice, tool, rng, show);
+                slice.search(std::iter::once(&mut *pose), &self.settings);
+                self.show_slice(&slice, show);
             }
         }
         if self.is_bounded() {
             return vec![AngleSet::empty(); self.joints];
         }
-        self.ranges(tool, &self.extents)
+        self.ranges(&pose.0, &self.extents)
     }
 
-    fn solve_slice(
-        &mut self,
-        slice: &mut Slice,
-        tool: &Isometry3<f64>,
-        rng: &mut ChaCha8Rng,
-        show: &mut dyn FnMut(CurveRef<'_>),
-    ) {
-        let goal = Goal::new(&slice.chain, tool);
-        slice.solver.solve(&goal, &self.settings, rng);
+    fn show_slice(&mut self, slice: &Slice, show: &mut dyn FnMut(CurveRef<'_>)) {
         self.seeds += slice.solver.effort().0;
         self.sound &= slice.solver.is_sound();
         let mut lift = Lift::default();
@@ -204,23 +224,12 @@ impl Sliced {
         });
     }
 
-    /// Shows the curves on the faces of a box: joint j fixed at either end of `limits[j]`
-    /// (`None`: not limited), for every j but joint 1.
-    pub fn solve_faces(
-        &mut self,
-        tool: &Isometry3<f64>,
-        faces: &mut Faces,
-        rng: &mut ChaCha8Rng,
-        show: &mut dyn FnMut(CurveRef<'_>),
-    ) {
-        let mut lift = Lift::default();
+    /// Finds the curves of many task points on the faces of a box; see [`Faces::show`].
+    pub fn search_faces<'p>(&self, poses: impl Iterator<Item = &'p mut Pose>, faces: &mut Faces) {
+        let mut poses: Vec<&mut Pose> = poses.collect();
         for slice in &mut faces.slices {
-            let goal = Goal::new(&slice.chain, tool);
-            slice.solver.solve(&goal, &self.settings, rng);
-            self.seeds += slice.solver.effort().0;
-            slice
-                .solver
-                .show(|curve| show(lift.lift(&curve, &slice.fixed)));
+            let again = poses.iter_mut().map(|pose| &mut **pose);
+            slice.search(again, &self.settings);
         }
     }
 
@@ -267,15 +276,11 @@ impl Sliced {
         }
     }
 
-    /// Shows the curves on the walls of the physical limits of the joints from 2 on.
-    pub fn solve_walls(
-        &mut self,
-        tool: &Isometry3<f64>,
-        rng: &mut ChaCha8Rng,
-        show: &mut dyn FnMut(CurveRef<'_>),
-    ) {
+    /// Finds and shows the curves on the walls of the physical limits of the joints from 2 on.
+    pub fn show_walls(&mut self, pose: &mut Pose, show: &mut dyn FnMut(CurveRef<'_>)) {
         if let Some(mut walls) = self.walls.take() {
-            self.solve_faces(tool, &mut walls, rng, show);
+            self.search_faces(std::iter::once(pose), &mut walls);
+            self.seeds += walls.show(0, show);
             self.walls = Some(walls);
         }
     }
@@ -291,10 +296,38 @@ impl Sliced {
     }
 }
 
+impl Slice {
+    /// Finds the curves of many task points.
+    fn search<'p>(&mut self, poses: impl Iterator<Item = &'p mut Pose>, settings: &SearchSettings) {
+        let chain = &self.chain;
+        let job = |(tool, rng): &'p mut Pose| -> Job<'p> { (Goal::new(chain, tool), rng) };
+        let mut jobs: Vec<Job> = poses.map(job).collect();
+        if !jobs.is_empty() {
+            self.solver.solve_all(&mut jobs, settings);
+        }
+    }
+}
+
 /// The slices on the faces of a box.
 #[derive(Clone, Debug)]
 pub struct Faces {
     slices: Vec<Slice>,
+}
+
+impl Faces {
+    /// Shows the curves of task point `index` of those last searched; the random starts made.
+    pub(super) fn show(&mut self, index: usize, show: &mut dyn FnMut(CurveRef<'_>)) -> usize {
+        let mut lift = Lift::default();
+        let mut seeds = 0;
+        for slice in &mut self.slices {
+            slice.solver.turn_to(index);
+            seeds += slice.solver.effort().0;
+            slice
+                .solver
+                .show(|curve| show(lift.lift(&curve, &slice.fixed)));
+        }
+        seeds
+    }
 }
 
 /// Fewer starts a slice than for a pre-image of its own: neighbouring slices show the same parts
@@ -309,41 +342,5 @@ fn sparse(settings: SearchSettings) -> SearchSettings {
     }
 }
 
-/// Room for a curve with the fixed joints put back.
-#[derive(Default)]
-struct Lift {
-    points: Vec<f64>,
-    tangents: Vec<f64>,
-    winding: Vec<i32>,
-}
-
-impl Lift {
-    fn lift<'a>(&'a mut self, curve: &CurveRef<'_>, fixed: &[(usize, f64)]) -> CurveRef<'a> {
-        self.points.clear();
-        self.tangents.clear();
-        self.winding.clear();
-        for index in 0..curve.vertices() {
-            spread(curve.point(index), fixed.iter().copied(), &mut self.points);
-            let still = fixed.iter().map(|&(joint, _)| (joint, 0.0));
-            spread(curve.tangent(index), still, &mut self.tangents);
-        }
-        let still = fixed.iter().map(|&(joint, _)| (joint, 0));
-        spread(curve.winding(), still, &mut self.winding);
-        CurveRef::new(
-            curve.joints + fixed.len(),
-            &self.points,
-            &self.tangents,
-            curve.status,
-            &self.winding,
-        )
-    }
-}
-
-/// Appends `values` with the `fixed` entries (ascending joints) put in their places.
-fn spread<T: Copy>(values: &[T], fixed: impl Iterator<Item = (usize, T)>, out: &mut Vec<T>) {
-    let begin = out.len();
-    out.extend_from_slice(values);
-    for (joint, value) in fixed {
-        out.insert(begin + joint, value);
-    }
-}
+#[cfg(test)]
+mod tests;

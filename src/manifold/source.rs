@@ -123,6 +123,9 @@ impl<'a> CurveRef<'a> {
     }
 }
 
+/// A tool pose with the random stream of its search.
+pub type Pose = (Isometry3<f64>, ChaCha8Rng);
+
 /// Finds the pre-image of one task point after the other, as curves.
 #[derive(Clone, Debug)]
 pub struct CurveSource {
@@ -195,58 +198,61 @@ impl CurveSource {
         slabs
     }
 
-    /// Finds the pre-image of the tool pose `tool`, given in the frame of joint 1; shows its
-    /// curves and returns the range Θ of every joint, physical limits left out. If a joint from 2
-    /// on has some, surfaces show their curves on these walls as well, and ranges are those of
-    /// [`CurveSource::ranges_within`].
+    /// Finds the pre-image of one tool pose; see [`CurveSource::show`].
     pub fn solve(
         &mut self,
         tool: &Isometry3<f64>,
         rng: &mut ChaCha8Rng,
-        mut show: impl FnMut(CurveRef<'_>),
+        show: impl FnMut(CurveRef<'_>),
     ) -> Vec<AngleSet> {
-        match &mut self.method {
-            Method::Curves(solver) => {
-                solver.solve(&Goal::new(&self.chain, tool), &self.settings, rng);
-                solver.show_with_ranges(show)
-            }
-            Method::Slices(sliced) => {
-                let ranges = sliced.solve(tool, rng, &mut show);
-                sliced.solve_walls(tool, rng, &mut show);
-                ranges
-            }
-        }
+        let mut poses = [(*tool, rng.clone())];
+        self.search_all(&mut poses);
+        let ranges = self.show(0, &mut poses[0], show);
+        *rng = poses[0].1.clone();
+        ranges
     }
 
     /// Most task points that [`CurveSource::search_all`] should be given.
-    pub const BATCH: usize = BATCH;
+    pub fn batch(&self) -> usize {
+        match &self.method {
+            Method::Curves(_) => BATCH,
+            Method::Slices(sliced) => sliced.batch(),
+        }
+    }
 
-    /// Searches many task points together, each with its own random stream, where that is faster
-    /// than one after the other; [`CurveSource::show`] then gives for each what
-    /// [`CurveSource::solve`] would, bit for bit.
-    pub fn search_all(&mut self, poses: &mut [(Isometry3<f64>, ChaCha8Rng)]) {
-        if let Method::Curves(solver) = &mut self.method {
-            let goal = |tool: &Isometry3<f64>| Goal::new(&self.chain, tool);
-            let jobs = poses.iter_mut().map(|(tool, rng)| (goal(tool), rng));
-            solver.solve_all(&mut jobs.collect::<Vec<_>>(), &self.settings);
+    /// Searches many task points together, given as tool poses in the frame of joint 1, each with
+    /// its own random stream; what is found does not depend on the others.
+    pub fn search_all(&mut self, poses: &mut [Pose]) {
+        match &mut self.method {
+            Method::Curves(solver) => {
+                let goal = |tool: &Isometry3<f64>| Goal::new(&self.chain, tool);
+                let jobs = poses.iter_mut().map(|(tool, rng)| (goal(tool), rng));
+                solver.solve_all(&mut jobs.collect::<Vec<_>>(), &self.settings);
+            }
+            Method::Slices(sliced) => sliced.search_all(poses),
         }
     }
 
     /// Shows the curves of task point `index` of the last [`CurveSource::search_all`], to be given
-    /// once more, and returns the range Θ of every joint. The other methods then speak of this
-    /// task point.
+    /// once more, and returns the range Θ of every joint, physical limits left out. If a joint
+    /// from 2 on has some, surfaces show their curves on these walls as well, and ranges are those
+    /// of [`CurveSource::ranges_within`]. The other methods then speak of this task point.
     pub fn show(
         &mut self,
         index: usize,
-        (tool, rng): &mut (Isometry3<f64>, ChaCha8Rng),
-        show: impl FnMut(CurveRef<'_>),
+        pose: &mut Pose,
+        mut show: impl FnMut(CurveRef<'_>),
     ) -> Vec<AngleSet> {
         match &mut self.method {
             Method::Curves(solver) => {
                 solver.turn_to(index);
                 solver.show_with_ranges(show)
             }
-            Method::Slices(_) => self.solve(tool, rng, show),
+            Method::Slices(sliced) => {
+                let ranges = sliced.show(index, pose, &mut show);
+                sliced.show_walls(pose, &mut show);
+                ranges
+            }
         }
     }
 
@@ -264,7 +270,7 @@ impl CurveSource {
     }
 
     /// The faces of a box of limits ([lower, upper] in internal radians, `None` where a joint is
-    /// free), for [`CurveSource::solve_faces`]; none with one degree of redundancy.
+    /// free), for [`CurveSource::search_faces`]; none with one degree of redundancy.
     pub fn faces(&self, limits: &[Option<[f64; 2]>]) -> Option<Faces> {
         match &self.method {
             Method::Curves(_) => None,
@@ -272,17 +278,23 @@ impl CurveSource {
         }
     }
 
-    /// Shows the curves of the pre-image on the faces of a box.
-    pub fn solve_faces(
-        &mut self,
-        tool: &Isometry3<f64>,
-        faces: &mut Faces,
-        rng: &mut ChaCha8Rng,
-        mut show: impl FnMut(CurveRef<'_>),
-    ) {
-        if let Method::Slices(sliced) = &mut self.method {
-            sliced.solve_faces(tool, faces, rng, &mut show);
+    /// Finds the curves of many task points on the faces of a box; see
+    /// [`CurveSource::show_faces`].
+    pub fn search_faces<'p>(&self, poses: impl Iterator<Item = &'p mut Pose>, faces: &mut Faces) {
+        if let Method::Slices(sliced) = &self.method {
+            sliced.search_faces(poses, faces);
         }
+    }
+
+    /// Shows the curves on the faces of task point `index` of the last
+    /// [`CurveSource::search_faces`]; returns the random starts made.
+    pub fn show_faces(
+        &self,
+        index: usize,
+        faces: &mut Faces,
+        mut show: impl FnMut(CurveRef<'_>),
+    ) -> usize {
+        faces.show(index, &mut show)
     }
 
     /// Random starts made for the last task point.

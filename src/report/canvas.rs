@@ -59,8 +59,13 @@ pub struct Canvas<'a> {
 
 /// Draws and returns a PNG file's bytes.
 pub(super) fn png(size: Size, draw: impl FnOnce(&mut Canvas)) -> Result<Vec<u8>, ReportError> {
+    png_of(&svg(size, draw)?, size)
+}
+
+/// The PNG file's bytes of what [`svg`] has drawn.
+pub(super) fn png_of(document: &str, size: Size) -> Result<Vec<u8>, ReportError> {
     let (width, height) = size.units();
-    render::png(&svg(size, draw)?, (width / 2, height / 2))
+    render::png(document, (width / 2, height / 2))
 }
 
 /// Draws and returns the SVG document.

@@ -48,17 +48,33 @@ pub fn write_figure(
     directory: &Path,
     formats: &[Format],
 ) -> Result<Vec<PathBuf>, ReportError> {
+    let svg = figure_svg(figure)?;
     let png = match formats.contains(&Format::Png) {
-        true => figure_png(figure)?,
+        true => canvas::png_of(&svg, figure.size())?,
         false => Vec::new(),
     };
-    write_rendered(figure, &png, directory, formats)
+    write_drawn(figure, &Drawn { svg, png }, directory, formats)
 }
 
-/// [`write_figure`] of a figure whose PNG is at hand.
-pub(super) fn write_rendered(
+/// A figure in both formats.
+pub(super) struct Drawn {
+    pub svg: String,
+    pub png: Vec<u8>,
+}
+
+impl Drawn {
+    /// Draws once: pictures of workspaces take their time.
+    pub fn new(figure: &dyn Figure) -> Result<Drawn, ReportError> {
+        let svg = figure_svg(figure)?;
+        let png = canvas::png_of(&svg, figure.size())?;
+        Ok(Drawn { svg, png })
+    }
+}
+
+/// [`write_figure`] of a figure that has been drawn.
+pub(super) fn write_drawn(
     figure: &dyn Figure,
-    png: &[u8],
+    drawn: &Drawn,
     directory: &Path,
     formats: &[Format],
 ) -> Result<Vec<PathBuf>, ReportError> {
@@ -70,10 +86,10 @@ pub(super) fn write_rendered(
         Ok::<(), ReportError>(())
     };
     if formats.contains(&Format::Png) {
-        save("png", png)?;
+        save("png", &drawn.png)?;
     }
     if formats.contains(&Format::Svg) {
-        save("svg", figure_svg(figure)?.as_bytes())?;
+        save("svg", drawn.svg.as_bytes())?;
     }
     save("csv", figure.table().to_csv()?.as_bytes())?;
     Ok(written)

@@ -1,7 +1,7 @@
 //! The report of a study as sections of text and tables, figures and files.
 
 use super::error::ReportError;
-use super::figure::{Figure, Format, figure_png, write_rendered};
+use super::figure::{Drawn, Figure, Format, write_drawn};
 use super::html::{InlineFigure, document, files, inlined, notes, sources};
 use super::result_files::{write_json, write_text};
 use super::style::COLUMN;
@@ -76,10 +76,10 @@ pub fn write_finding_report(
     if page {
         let mut inline = Vec::new();
         for figure in &report.figures {
-            let png = figure_png(*figure)?;
-            written.extend(write_rendered(*figure, &png, directory, formats)?);
+            let drawn = Drawn::new(*figure)?;
+            written.extend(write_drawn(*figure, &drawn, directory, formats)?);
             inline.push(InlineFigure {
-                png,
+                png: drawn.png,
                 caption: figure.caption(),
                 is_wide: figure.size().width > COLUMN,
             });

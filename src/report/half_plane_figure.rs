@@ -186,6 +186,10 @@ pub(super) fn draw_cells(
 ) {
     let metres = (panel.x[1] - panel.x[0]) / panel.width;
     let map = sections.map;
+    // Means over all azimuths are not taken anew for every pixel.
+    let cells = (0..map.radii() * map.heights())
+        .map(|cell| value(cell / map.heights(), cell % map.heights()));
+    let values: Vec<f64> = cells.collect();
     canvas.picture(
         [panel.left, panel.top],
         [panel.width, panel.height],
@@ -194,7 +198,7 @@ pub(super) fn draw_cells(
             let z = panel.y[1] - (y - panel.top) * metres;
             let share = map
                 .cell([r, 0.0, z])
-                .map_or(0.0, |[ir, iz, _]| value(ir, iz));
+                .map_or(0.0, |[ir, iz, _]| values[ir * map.heights() + iz]);
             let colour = match sections.outline.contains(r, z) {
                 true if share > 0.0 => scale.colour(share),
                 true => REACHABLE,

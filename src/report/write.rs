@@ -2,7 +2,7 @@
 
 use super::convergence::Convergence;
 use super::error::ReportError;
-use super::figure::{Figure, Format, figure_png, write_rendered};
+use super::figure::{Drawn, Figure, Format, write_drawn};
 use super::html::{InlineFigure, page};
 use super::limits_figure::LimitsFigure;
 use super::points::{POINTS, write_points};
@@ -115,10 +115,10 @@ pub(super) fn write_figures<'f>(
 ) -> Result<(Vec<PathBuf>, Vec<InlineFigure>), ReportError> {
     let (mut written, mut inline) = (Vec::new(), Vec::new());
     for figure in figures {
-        let png = figure_png(figure)?;
-        written.extend(write_rendered(figure, &png, directory, formats)?);
+        let drawn = Drawn::new(figure)?;
+        written.extend(write_drawn(figure, &drawn, directory, formats)?);
         inline.push(InlineFigure {
-            png,
+            png: drawn.png,
             caption: figure.caption(),
             is_wide: figure.size().width > COLUMN,
         });

@@ -1,8 +1,9 @@
 //! Pre-images of a range of samples, packed into one run of bytes that needs no unpacking.
 //!
 //! Layout, everything little-endian and aligned to 8 bytes:
-//! header | poses | arc counts (n bytes a pose) | arcs | pieces | vertices (n steps each).
+//! header | poses | arc counts (n bytes a pose) | arcs | pieces | hulls (2n steps each) | vertices (n steps each).
 
+use super::hull::{Strand, append_hulls, hulls_of};
 use super::turn16::Arc16;
 use zerocopy::{FromBytes, Immutable, IntoBytes, KnownLayout};
 
@@ -34,6 +35,8 @@ pub(super) struct PieceRecord {
     pub first_vertex: u32,
     /// Number of vertices.
     pub vertices: u32,
+    /// Where its hulls begin.
+    pub first_hull: u32,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq, FromBytes, IntoBytes, Immutable, KnownLayout)]
@@ -44,8 +47,10 @@ struct Header {
     arcs: u32,
     pieces: u32,
     vertices: u32,
+    hulls: u32,
     /// Samples of the block, reachable or not.
     samples: u32,
+    unused: u32,
     /// Random starts made.
     seeds: u64,
 }
@@ -58,6 +63,7 @@ pub(super) struct BlockBuilder {
     counts: Vec<u8>,
     arcs: Vec<Arc16>,
     pieces: Vec<PieceRecord>,
+    hulls: Vec<u16>,
     vertices: Vec<u16>,
     pub samples: u32,
     pub seeds: u64,
@@ -79,7 +85,10 @@ impl BlockBuilder {
         self.pieces.push(PieceRecord {
             first_vertex,
             vertices,
+            first_hull: (self.hulls.len() / (2 * self.joints)) as u32,
         });
+        let piece = &self.vertices[first_vertex as usize * self.joints..];
+        append_hulls(piece, self.joints, &mut self.hulls);
     }
 
     /// Closes a pose: `ranges` yields the arcs of every joint.
@@ -119,7 +128,9 @@ impl BlockBuilder {
             arcs: self.arcs.len() as u32,
             pieces: self.pieces.len() as u32,
             vertices: (self.vertices.len() / self.joints) as u32,
+            hulls: (self.hulls.len() / (2 * self.joints)) as u32,
             samples: self.samples,
+            unused: 0,
             seeds: self.seeds,
         };
         let mut bytes = Vec::new();
@@ -132,6 +143,7 @@ impl BlockBuilder {
         append(&self.counts);
         append(self.arcs.as_bytes());
         append(self.pieces.as_bytes());
+        append(self.hulls.as_bytes());
         append(self.vertices.as_bytes());
         bytes
     }
@@ -145,6 +157,7 @@ pub(super) struct BlockView<'a> {
     counts: &'a [u8],
     arcs: &'a [Arc16],
     pieces: &'a [PieceRecord],
+    hulls: &'a [u16],
     vertices: &'a [u16],
     pub samples: u32,
     pub seeds: u64,
@@ -159,6 +172,7 @@ impl<'a> BlockView<'a> {
             counts: &[],
             arcs: &[],
             pieces: &[],
+            hulls: &[],
             vertices: &[],
             samples: 0,
             seeds: 0,
@@ -174,6 +188,7 @@ impl<'a> BlockView<'a> {
         let counts = take::<u8>(&mut rest, n.checked_mul(poses.len())?)?;
         let arcs = take::<Arc16>(&mut rest, header.arcs as usize)?;
         let pieces = take::<PieceRecord>(&mut rest, header.pieces as usize)?;
+        let hulls = take::<u16>(&mut rest, (2 * n).checked_mul(header.hulls as usize)?)?;
         let vertices = take::<u16>(&mut rest, n.checked_mul(header.vertices as usize)?)?;
         let view = BlockView {
             joints: n,
@@ -181,6 +196,7 @@ impl<'a> BlockView<'a> {
             counts,
             arcs,
             pieces,
+            hulls,
             vertices,
             samples: header.samples,
             seeds: header.seeds,
@@ -191,6 +207,7 @@ impl<'a> BlockView<'a> {
     /// Whether every index points inside.
     pub fn is_consistent(&self) -> bool {
         let vertices = self.vertices.len() / self.joints;
+        let hulls = self.hulls.len() / (2 * self.joints);
         let inside = |first: u32, count: u32, end: usize| {
             (first as usize)
                 .checked_add(count as usize)
@@ -203,11 +220,13 @@ impl<'a> BlockView<'a> {
                 && inside(pose.first_piece, pose.pieces, self.pieces.len())
                 && pose.weight.is_finite()
         };
-        self.poses.iter().enumerate().all(pose_fits)
-            && self
-                .pieces
-                .iter()
-                .all(|piece| inside(piece.first_vertex, piece.vertices, vertices))
+        let piece_fits = |piece: &PieceRecord| {
+            let own = hulls_of(piece.vertices as usize) as u32;
+            piece.vertices > 0
+                && inside(piece.first_vertex, piece.vertices, vertices)
+                && inside(piece.first_hull, own, hulls)
+        };
+        self.poses.iter().enumerate().all(pose_fits) && self.pieces.iter().all(piece_fits)
     }
 
     /// The arcs of every joint of pose `index`, joint 1 first.
@@ -226,10 +245,17 @@ impl<'a> BlockView<'a> {
 
     /// The polylines of a pose: n steps for every vertex.
     pub fn pieces(&self, pose: &PoseRecord) -> impl Iterator<Item = &'a [u16]> + use<'a> {
+        self.strands(pose).map(|strand| strand.vertices)
+    }
+
+    /// The polylines of a pose with their hulls.
+    pub fn strands(&self, pose: &PoseRecord) -> impl Iterator<Item = Strand<'a>> + use<'a> {
         let range = pose.first_piece as usize..(pose.first_piece + pose.pieces) as usize;
-        let (n, vertices) = (self.joints, self.vertices);
-        self.pieces[range].iter().map(move |piece| {
-            &vertices[piece.first_vertex as usize * n..][..piece.vertices as usize * n]
+        let (n, vertices, hulls) = (self.joints, self.vertices, self.hulls);
+        self.pieces[range].iter().map(move |piece| Strand {
+            vertices: &vertices[piece.first_vertex as usize * n..][..piece.vertices as usize * n],
+            hulls: &hulls[piece.first_hull as usize * 2 * n..],
+            joints: n,
         })
     }
 }

@@ -4,18 +4,20 @@ use super::block::BlockBuilder;
 use super::clip::Box16;
 use super::plan::{Sample, SamplePlan};
 use super::polyline::Polyline;
-use super::score::runs_of_theta_1;
+use super::runs::{Runs, arc};
 use super::turn16::{Arc16, STEP, angle, arcs16, quantise};
 use crate::angle::{AngleSet, Arc};
-use crate::manifold::{CurveRef, CurveSource, Extent, Faces};
+use crate::manifold::{CurveRef, CurveSource, Extent, Faces, Pose};
 use crate::workspace::ArtificialLimits;
-use rand_chacha::ChaCha8Rng;
 
 /// What is kept of a pre-image, and how closely.
 #[derive(Clone, Debug)]
 pub(super) struct Packing {
     /// Largest distance between a polyline and its curve, radians.
     pub tolerance: f64,
+    /// The same for the polylines that ranges inside physical limits are taken from: a chord ends
+    /// before its curve's extremum.
+    pub close: f64,
     /// Physical limits of every joint.
     pub physical: Vec<Arc>,
     /// Keep only what scoring these very limits needs: ranges and the θ₁-image of the box.
@@ -41,7 +43,8 @@ pub(super) fn build_block(
     indices: impl Iterator<Item = u64>,
 ) -> BlockBuilder {
     let mut packer = Packer::new(source.joints(), packing, plan);
-    let mut batch = Vec::with_capacity(CurveSource::BATCH);
+    let most = source.batch();
+    let mut batch = Vec::with_capacity(most);
     for index in indices {
         let sample = plan.sample(index);
         packer.block.samples += 1;
@@ -49,17 +52,13 @@ pub(super) fn build_block(
             continue;
         }
         batch.push((index, sample));
-        if batch.len() == CurveSource::BATCH {
+        if batch.len() == most {
             packer.add_all(source, packing, plan, &mut batch);
         }
     }
     packer.add_all(source, packing, plan, &mut batch);
     packer.block
 }
-
-/// Tolerance of the curves that ranges inside physical limits are taken from, as a share of that
-/// of the curves kept: a chord ends before its curve's extremum.
-const CLOSE: f64 = 1.0 / 16.0;
 
 struct Packer {
     joints: usize,
@@ -74,10 +73,22 @@ struct Packer {
     parts: Vec<Extent>,
     /// The curves that these ranges are taken from, closer than the ones kept.
     close: Polyline,
-    /// θ₁-image of the focus of the current pose.
+    /// θ₁-image of the focus, of the curves pushed last.
     image: Vec<Arc>,
     flat: Vec<u16>,
     curves: usize,
+}
+
+/// A reachable sample, but for the faces of the focus.
+struct Found<'p> {
+    index: u64,
+    sample: Sample,
+    /// Θ of every joint.
+    ranges: Vec<AngleSet>,
+    /// θ₁-image of the focus.
+    image: Vec<Arc>,
+    is_sound: bool,
+    pose: &'p mut Pose,
 }
 
 impl Packer {
@@ -98,7 +109,7 @@ impl Packer {
             inner: arcs(&packing.physical),
             focus,
             parts: Vec::new(),
-            close: Polyline::new(joints, CLOSE * packing.tolerance),
+            close: Polyline::new(joints, packing.close),
             image: Vec::new(),
             flat: Vec::new(),
             curves: 0,
@@ -116,53 +127,70 @@ impl Packer {
         let pose = |(index, sample): &(u64, Sample)| (sample.tool, plan.search_stream(*index));
         let mut poses: Vec<_> = batch.iter().map(pose).collect();
         source.search_all(&mut poses);
+        let (limits, mut faces) = match &mut packing.focus {
+            None => (None, None),
+            Some(Focus { limits, faces }) => (Some(&*limits), faces.as_mut()),
+        };
+        let mut waiting = Vec::new();
         for (nth, ((index, sample), pose)) in batch.drain(..).zip(&mut poses).enumerate() {
-            self.parts.clear();
-            self.image.clear();
-            self.curves = 0;
-            let free = source.show(nth, pose, |curve| self.push_curve(&curve, true));
-            self.add(source, packing, (index, &sample), free, &mut pose.1);
-            self.block.seeds += source.seeds() as u64;
+            let Some(found) = self.look(source, nth, (index, sample), pose) else {
+                continue;
+            };
+            match faces {
+                None => self.add(found, limits),
+                Some(_) => waiting.push(found),
+            }
+        }
+        if let Some(faces) = &mut faces {
+            source.search_faces(waiting.iter_mut().map(|found| &mut *found.pose), faces);
+            for (nth, mut found) in waiting.into_iter().enumerate() {
+                self.image.append(&mut found.image);
+                let seeds = source.show_faces(nth, faces, |curve| self.push_curve(&curve, false));
+                found.image.append(&mut self.image);
+                self.block.seeds += seeds as u64;
+                self.add(found, limits);
+            }
         }
     }
 
-    /// Packs the sample whose curves have been pushed and whose joints have the ranges `free`
-    /// without physical limits.
-    fn add(
+    /// Takes in the curves of task point `nth` of a batch; `None` if there are none.
+    fn look<'p>(
         &mut self,
         source: &mut CurveSource,
-        packing: &mut Packing,
-        (index, sample): (u64, &Sample),
-        free: Vec<AngleSet>,
-        rng: &mut ChaCha8Rng,
-    ) {
-        if let Some(Focus {
-            faces: Some(faces), ..
-        }) = &mut packing.focus
-        {
-            let found = self.curves;
-            if found > 0 {
-                source.solve_faces(&sample.tool, faces, rng, |curve| {
-                    self.push_curve(&curve, false);
-                });
-            }
-        }
-        if self.curves == 0 {
-            return;
-        }
-        if let Some(focus) = &packing.focus {
-            self.push_image(&focus.limits);
-        }
+        nth: usize,
+        (index, sample): (u64, Sample),
+        pose: &'p mut Pose,
+    ) -> Option<Found<'p>> {
+        self.parts.clear();
+        self.curves = 0;
+        let free = source.show(nth, pose, |curve| self.push_curve(&curve, true));
+        self.block.seeds += source.seeds() as u64;
+        let image = std::mem::take(&mut self.image);
         let ranges = match self.inner.is_everything() {
             true => free,
             false => source.ranges_within(&sample.tool, &self.parts),
         };
-        let ranges = ranges.iter().map(|set| arcs16(set).collect());
+        (self.curves > 0).then(|| Found {
+            index,
+            sample,
+            ranges,
+            image,
+            is_sound: source.is_sound(),
+            pose,
+        })
+    }
+
+    /// Packs a sample whose curves have been pushed.
+    fn add(&mut self, found: Found, focus: Option<&ArtificialLimits>) {
+        if let Some(limits) = focus {
+            self.push_image(limits, found.image);
+        }
+        let ranges = found.ranges.iter().map(|set| arcs16(set).collect());
         self.block.finish_pose(
-            index as u32,
-            sample.stratum,
-            sample.weight,
-            source.is_sound(),
+            found.index as u32,
+            found.sample.stratum,
+            found.sample.weight,
+            found.is_sound,
             ranges,
         );
     }
@@ -196,20 +224,19 @@ impl Packer {
         match &self.focus {
             None => self.block.push_piece(piece.iter().copied()),
             Some(focus) => {
-                let runs = runs_of_theta_1(focus, piece, self.joints);
-                let arcs = runs.into_iter().map(|[a, b]| Arc::from_interval(a, b));
-                self.image.extend(arcs);
+                let runs = Runs::of(focus, piece, self.joints);
+                self.image.extend(runs.all.iter().map(arc));
             }
         }
     }
 
     /// Stores the image as polylines in the middle of the box along which only θ₁ changes.
-    fn push_image(&mut self, limits: &ArtificialLimits) {
+    fn push_image(&mut self, limits: &ArtificialLimits, image: Vec<Arc>) {
         let rest: Vec<u16> = limits.joints()[1..]
             .iter()
             .map(|limit| quantise(limit.arc().centre()))
             .collect();
-        for arc in AngleSet::from_arcs(self.image.drain(..)).arcs() {
+        for arc in AngleSet::from_arcs(image).arcs() {
             let edges = (arc.width() / 2.0).ceil().max(1.0) as usize;
             let vertex = |k: usize| {
                 let theta = arc.start() + arc.width() * k as f64 / edges as f64;

@@ -1,5 +1,6 @@
 //! The parts of a polyline inside a box of joint limits.
 
+use super::hull::{Chunk, Strand};
 use super::lanes::{Lanes, Place, vertex};
 use super::turn16::Arc16;
 use smallvec::{SmallVec, smallvec};
@@ -81,6 +82,15 @@ impl Box16 {
             .map_or(Place::Unsure, |lanes| lanes.place(from, to))
     }
 
+    /// Where the edges of a chunk lie, as far as their hull tells.
+    #[inline]
+    pub fn place_hull(&self, chunk: &Chunk) -> Place {
+        match &self.lanes {
+            Some(lanes) => lanes.place_hull(&chunk.start, &chunk.width),
+            None => Place::Unsure,
+        }
+    }
+
     /// Calls `emit` with the number of every edge of `piece` that has a part inside, that part,
     /// and the edge's ends.
     #[inline]
@@ -88,9 +98,20 @@ impl Box16 {
         &self,
         piece: &'a [u16],
         joints: usize,
-        mut emit: impl FnMut(usize, [f64; 2], &'a [u16], &'a [u16]),
+        emit: impl FnMut(usize, [f64; 2], &'a [u16], &'a [u16]),
     ) {
         let edges = (piece.len() / joints).saturating_sub(1);
+        self.walk_edges((piece, edges), joints, emit);
+    }
+
+    /// The same for the first `edges` edges of `piece`.
+    #[inline]
+    pub fn walk_edges<'a>(
+        &self,
+        (piece, edges): (&'a [u16], usize),
+        joints: usize,
+        mut emit: impl FnMut(usize, [f64; 2], &'a [u16], &'a [u16]),
+    ) {
         let mut before = vertex(piece, 0);
         for index in 0..edges {
             let at = (index + 1) * joints;
@@ -115,9 +136,16 @@ impl Box16 {
         }
     }
 
-    /// Whether any part of `piece` lies inside.
-    pub fn meets(&self, piece: &[u16], joints: usize) -> bool {
-        let edges = (piece.len() / joints).saturating_sub(1);
+    /// Whether any part of `strand` lies inside.
+    pub fn meets(&self, strand: Strand) -> bool {
+        strand.chunks().any(|chunk| match self.place_hull(&chunk) {
+            Place::Inside => true,
+            Place::Outside => false,
+            Place::Unsure => self.meets_edges(chunk.row(), strand.joints),
+        })
+    }
+
+    fn meets_edges(&self, (piece, edges): (&[u16], usize), joints: usize) -> bool {
         let mut before = vertex(piece, 0);
         let meets = |index: usize| {
             let at = (index + 1) * joints;
@@ -263,7 +291,11 @@ mod tests {
                     all
                 };
                 assert_eq!(parts(&limits), parts(&slow));
-                assert_eq!(limits.meets(&piece, joints), !parts(&slow).is_empty());
+                let edges = piece.len() / joints - 1;
+                assert_eq!(
+                    limits.meets_edges((&piece, edges), joints),
+                    !parts(&slow).is_empty()
+                );
             }
         }
     }

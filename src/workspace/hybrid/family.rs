@@ -104,6 +104,48 @@ impl Family {
         }
     }
 
+    /// The least and the greatest width at which an angle of an arc may enter.
+    #[inline]
+    pub fn span(&self, (start, width): (u16, u16)) -> [f64; 2] {
+        let turn = 65_536;
+        if width == u16::MAX {
+            return [0.0, f64::from(turn)];
+        }
+        let width = i32::from(width);
+        let ahead = i32::from(start.wrapping_sub(self.anchor));
+        // The anchor, at which the limits have width 0, lies in the arc.
+        let passes = ahead + width >= turn;
+        let (near, far) = match self.growth {
+            Growth::Upper => match passes {
+                true => (0, turn),
+                false => (ahead, ahead + width),
+            },
+            Growth::Lower => match passes || ahead == 0 {
+                true => (0, turn),
+                false => (turn - ahead - width, turn - ahead),
+            },
+            Growth::Both => {
+                let half = turn / 2;
+                let distance = |x: i32| x.min((turn - x).abs());
+                let (a, b) = (distance(ahead), distance(ahead + width));
+                let opposite =
+                    ahead <= half && ahead + width >= half || ahead + width >= turn + half;
+                (
+                    if passes { 0 } else { 2 * a.min(b) },
+                    if opposite { turn } else { 2 * a.max(b) },
+                )
+            }
+        };
+        let (near, far) = (f64::from(near), f64::from(far));
+        // Within a slab behind the anchor a slice enters at once.
+        let one_sided = self.growth != Growth::Both;
+        let at_once = one_sided && far > f64::from(turn) - self.slab;
+        [
+            if at_once { 0.0 } else { self.thick(near) },
+            self.thick(far),
+        ]
+    }
+
     /// Widths at which both ends of a whole edge enter, if it passes no kink: the usual case.
     #[inline]
     fn straight(&self, from: u16, to: u16, part: [f64; 2]) -> Option<[f64; 2]> {
@@ -190,6 +232,44 @@ impl Family {
                 return;
             }
             u = v;
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::workspace::JointLimit;
+    use rand::Rng;
+
+    /// No edge along an arc enters before or after the widths that its span tells.
+    #[test]
+    fn a_span_holds_all_entries() {
+        let mut rng = crate::sampling::stream(13, 0);
+        for growth in [Growth::Lower, Growth::Upper, Growth::Both] {
+            for k in 0..6000 {
+                let slab = [0.0, 0.07, 0.4][k % 3];
+                let limits = ArtificialLimits::new(vec![JointLimit::new(-0.3, 0.9)]);
+                let family = Family::new(&limits, 0, growth, &[], slab);
+                let width: u16 = rng.random_range(0..25_000);
+                // Ends at the anchor and opposite to it are the cases that go wrong.
+                let start: u16 = match k % 4 {
+                    0 => family.anchor,
+                    1 => family.anchor.wrapping_sub(width),
+                    2 => family.anchor.wrapping_add(32_768),
+                    _ => rng.random(),
+                };
+                let [near, far] = family.span((start, width));
+                let end = start.wrapping_add(width);
+                for [from, to] in [[start, end], [end, start]] {
+                    family.entries(from, to, [0.0, 1.0], |_, widths| {
+                        for width in widths {
+                            let inside = near - 1e-6 <= width && width <= far + 1e-6;
+                            assert!(inside, "{growth:?} {slab} {start} {width} {near} {far}");
+                        }
+                    });
+                }
+            }
         }
     }
 }

@@ -14,7 +14,7 @@ pub(super) struct Lanes {
     active: [u16; 8],
 }
 
-/// Where an edge lies.
+/// Where an edge, or a few in a row, lie.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Place {
     /// Every joint stays in its limits.
@@ -64,16 +64,41 @@ impl Lanes {
     }
 }
 
+impl Lanes {
+    /// Where edges lie whose joints sweep the arcs with the given starts and widths.
+    #[inline(always)]
+    pub fn place_hull(&self, start: &[u16; 8], width: &[u16; 8]) -> Place {
+        let mask = |is: bool| 0u16.wrapping_sub(u16::from(is));
+        let (mut outside, mut unsure) = (0, 0);
+        for k in 0..8 {
+            let lead = start[k].wrapping_sub(self.start[k]);
+            let lag = self.start[k].wrapping_sub(start[k]);
+            let begins_outside = mask(lead > self.width[k]);
+            let room = self.width[k].wrapping_sub(lead);
+            outside |= self.active[k] & begins_outside & mask(lag > width[k]);
+            unsure |= self.active[k] & (begins_outside | mask(width[k] > room));
+        }
+        match (outside, unsure) {
+            (0, 0) => Place::Inside,
+            (0, _) => Place::Unsure,
+            _ => Place::Outside,
+        }
+    }
+}
+
 /// Eight joint angles from `at` on; what lies beyond the vertex or the piece has no meaning.
 #[inline(always)]
 pub(super) fn vertex(piece: &[u16], at: usize) -> [u16; 8] {
-    let mut lanes = [0; 8];
-    match piece.get(at..at + 8) {
-        Some(angles) => lanes.copy_from_slice(angles),
-        None => {
-            let rest = piece.get(at..).unwrap_or_default();
-            lanes[..rest.len()].copy_from_slice(rest);
-        }
+    let rest = piece.get(at..).unwrap_or_default();
+    match rest.first_chunk() {
+        Some(angles) => *angles,
+        None => last_vertex(rest),
     }
-    lanes
+}
+
+/// Apart, so that the usual case stays a single load.
+#[cold]
+#[inline(never)]
+fn last_vertex(rest: &[u16]) -> [u16; 8] {
+    std::array::from_fn(|k| rest.get(k).copied().unwrap_or_default())
 }

@@ -8,7 +8,10 @@
 use super::atlas::Atlas;
 use super::block::{BlockView, PoseRecord};
 use super::clip::Box16;
+use super::cover::Cover;
 use super::family::{Family, Growth};
+use super::hull::Strand;
+use super::lanes::Place;
 use super::score::{Limits16, Rule, covers};
 use super::turn16::{Arc16, STEP, angle_set};
 use crate::angle::{AngleSet, Arc};
@@ -63,7 +66,7 @@ fn first_joint(view: &BlockView, fixed: &Limits16, widths: &[f64]) -> Vec<f64> {
         if !fixed.survives_others(ranges, 0) {
             continue;
         }
-        let image = fixed.image(view.joints, view.pieces(pose));
+        let image = fixed.image(view, pose);
         if image.is_empty() {
             continue;
         }
@@ -80,8 +83,9 @@ fn first_joint(view: &BlockView, fixed: &Limits16, widths: &[f64]) -> Vec<f64> {
                 break;
             }
             let limit = Arc::new(-0.5 * width, width);
-            let after = after.as_ref().map(|range| (range, lock.arc()));
-            *sum += pose.weight * fixed.overlap(&limit, &image, after);
+            let after = after.as_ref();
+            let after = after.map(|range| range.erosion(&lock.arc()).mirrored());
+            *sum += pose.weight * overlap(&limit, &image, after.as_ref());
         }
     }
     sums
@@ -119,8 +123,7 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
             }
         } else {
             collect(view, pose, rest, family, &mut bins[..fits]);
-            let after = fixed.prone[0].then(|| angle_set(first));
-            let after = after.as_ref().map(|range| (range, fixed.first_lock));
+            let after = fixed.prone[0].then(|| fixed.lock_of_1(first));
             let mut last = 0.0;
             let mut image = AngleSet::empty();
             for (bin, step) in bins[..fits].iter_mut().zip(&mut steps) {
@@ -130,7 +133,7 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
                 // Mirrored from the start, as the difference A₁ − T wants it.
                 let mirrored = bin.drain(..).map(|arc| arc.mirrored());
                 image = image.union(&AngleSet::from_arcs(mirrored));
-                let measure = pose.weight * fixed.overlap(&fixed.first, &image, after);
+                let measure = pose.weight * overlap(&fixed.first, &image, after.as_ref());
                 *step += measure - last;
                 last = measure;
             }
@@ -149,14 +152,33 @@ fn other_joint(view: &BlockView, fixed: &Limits16, rest: &Box16, family: &Family
 /// The least width at which the pre-image enters the box.
 fn first_entry(view: &BlockView, pose: &PoseRecord, rest: &Box16, family: &Family) -> f64 {
     let mut least = f64::INFINITY;
-    for piece in view.pieces(pose) {
-        rest.walk(piece, view.joints, |_, part, from, to| {
+    for chunk in view.strands(pose).flat_map(Strand::chunks) {
+        let arc = chunk.arc(family.joint);
+        if rest.place_hull(&chunk) == Place::Outside || family.span(arc)[0] >= least {
+            continue;
+        }
+        rest.walk_edges(chunk.row(), view.joints, |_, part, from, to| {
             family.entries(from[family.joint], to[family.joint], part, |_, widths| {
                 least = least.min(widths[0]).min(widths[1]);
             });
         });
     }
     least
+}
+
+/// The angles of joint 1, by the first width at which they are inside.
+struct Entered<'b> {
+    bins: &'b mut [Vec<Arc>],
+    cover: Cover,
+}
+
+impl Entered<'_> {
+    fn take(&mut self, bin: usize, low: f64, high: f64) {
+        if let Some(arcs) = self.bins.get_mut(bin) {
+            arcs.push(Arc::from_interval(low, high));
+            self.cover.take(low / STEP, high / STEP, bin as u16);
+        }
+    }
 }
 
 /// Sorts the θ₁ values of all parts into the first width at which they are inside.
@@ -167,43 +189,89 @@ fn collect(
     family: &Family,
     bins: &mut [Vec<Arc>],
 ) {
-    let widths = &family.widths[..bins.len()];
+    let beyond = bins.len();
+    let widths = &family.widths[..beyond];
+    let mut entered = Entered {
+        bins,
+        cover: Cover::new(),
+    };
     let mut hint = 0;
-    for piece in view.pieces(pose) {
+    for strand in view.strands(pose) {
         let mut run = Run::default();
-        rest.walk(piece, view.joints, |_, part, from, to| {
-            let step = f64::from(to[0].wrapping_sub(from[0]) as i16);
-            let theta = |u: f64| (f64::from(from[0]) + u * step) * STEP;
-            let (a, b) = (from[family.joint], to[family.joint]);
-            family.entries(a, b, part, |[u, v], [start, end]| {
-                // Along the curve; widths may rise or fall.
-                let at = |width: f64| {
-                    let share = (width - start) / (end - start);
-                    theta(u + share.clamp(0.0, 1.0) * (v - u))
-                };
-                let (mut bin, last) = (bin_of(widths, start, hint), bin_of(widths, end, hint));
-                hint = last;
-                if bin == bins.len() && last == bin {
-                    // Beyond all widths.
-                    std::mem::take(&mut run).finish(bins);
-                    return;
-                }
-                let mut begin = theta(u);
-                while bin < last {
-                    let stop = at(widths.get(bin).copied().map_or(end, f64::from));
-                    run.extend(bin, begin, stop, bins);
-                    (begin, bin) = (stop, bin + 1);
-                }
-                while bin > last {
-                    let stop = at(f64::from(widths[bin - 1]));
-                    run.extend(bin, begin, stop, bins);
-                    (begin, bin) = (stop, bin - 1);
-                }
-                run.extend(bin, begin, theta(v), bins);
+        for chunk in strand.chunks() {
+            let place = rest.place_hull(&chunk);
+            if place == Place::Outside {
+                continue;
+            }
+            let span = family.span(chunk.arc(family.joint));
+            let [near, far] = span.map(|width| bin_of(widths, width, hint));
+            let (start, width) = chunk.arc(0);
+            if near == beyond || entered.cover.holds((start, width), near as u16) {
+                continue;
+            }
+            let is_whole = place == Place::Inside && width < u16::MAX;
+            let ends = [f64::from(start), f64::from(start) + f64::from(width)];
+            if is_whole && near == far {
+                entered.take(near, ends[0] * STEP, ends[1] * STEP);
+                continue;
+            }
+            rest.walk_edges(chunk.row(), view.joints, |_, part, from, to| {
+                collect_edge(
+                    [from, to],
+                    part,
+                    family,
+                    widths,
+                    (&mut hint, &mut run),
+                    &mut entered,
+                );
             });
-        });
-        run.finish(bins);
+            if is_whole && far < beyond {
+                entered.cover.take(ends[0], ends[1], far as u16);
+            }
+        }
+        run.finish(&mut entered);
     }
+}
+
+/// Sorts the θ₁ values of one part of an edge.
+#[inline]
+fn collect_edge(
+    [from, to]: [&[u16]; 2],
+    part: [f64; 2],
+    family: &Family,
+    widths: &[i32],
+    (hint, run): (&mut usize, &mut Run),
+    entered: &mut Entered,
+) {
+    let step = f64::from(to[0].wrapping_sub(from[0]) as i16);
+    let theta = |u: f64| (f64::from(from[0]) + u * step) * STEP;
+    let (a, b) = (from[family.joint], to[family.joint]);
+    family.entries(a, b, part, |[u, v], [start, end]| {
+        // Along the curve; widths may rise or fall.
+        let at = |width: f64| {
+            let share = (width - start) / (end - start);
+            theta(u + share.clamp(0.0, 1.0) * (v - u))
+        };
+        let (mut bin, last) = (bin_of(widths, start, *hint), bin_of(widths, end, *hint));
+        *hint = last;
+        if bin == widths.len() && last == bin {
+            // Beyond all widths.
+            std::mem::take(run).finish(entered);
+            return;
+        }
+        let mut begin = theta(u);
+        while bin < last {
+            let stop = at(widths.get(bin).copied().map_or(end, f64::from));
+            run.extend(bin, begin, stop, entered);
+            (begin, bin) = (stop, bin + 1);
+        }
+        while bin > last {
+            let stop = at(f64::from(widths[bin - 1]));
+            run.extend(bin, begin, stop, entered);
+            (begin, bin) = (stop, bin - 1);
+        }
+        run.extend(bin, begin, theta(v), entered);
+    });
 }
 
 /// The first of `widths` that is no less than `width`, looked for at `hint` first: neighbouring
@@ -239,7 +307,7 @@ impl Default for Run {
 
 impl Run {
     /// Appends the way from `begin` to `end`, radians modulo turns, which enters with `bin`.
-    fn extend(&mut self, bin: usize, begin: f64, end: f64, bins: &mut [Vec<Arc>]) {
+    fn extend(&mut self, bin: usize, begin: f64, end: f64, entered: &mut Entered) {
         let gap = self.end - begin;
         let shift = match gap.abs() < 1e-9 {
             true => 0.0,
@@ -247,7 +315,7 @@ impl Run {
         };
         let joins = bin == self.bin && (begin + shift - self.end).abs() < 1e-9;
         if !joins {
-            self.finish(bins);
+            self.finish(entered);
             *self = Run {
                 bin,
                 low: begin.min(end),
@@ -261,10 +329,8 @@ impl Run {
         self.high = self.high.max(self.end);
     }
 
-    fn finish(&self, bins: &mut [Vec<Arc>]) {
-        if let Some(arcs) = bins.get_mut(self.bin) {
-            arcs.push(Arc::from_interval(self.low, self.high));
-        }
+    fn finish(&self, entered: &mut Entered) {
+        entered.take(self.bin, self.low, self.high);
     }
 }
 
@@ -281,16 +347,12 @@ impl Limits16 {
             joint == except || !self.prone[joint] || covers(range, self.locks[joint])
         })
     }
+}
 
-    /// |B₀ ∩ B₁| for A₁ = `limit`, the mirrored image −T and, if joint 1 may lock, the range Θ₁
-    /// with the arc in which it may.
-    fn overlap(&self, limit: &Arc, mirrored: &AngleSet, after: Option<(&AngleSet, Arc)>) -> f64 {
-        let before = mirrored.sum(limit);
-        match after {
-            Some((range, lock)) => before.overlap(&range.erosion(&lock).mirrored()),
-            None => before.measure(),
-        }
-    }
+/// |B₀ ∩ B₁| for A₁ = `limit`, the mirrored image −T and, if joint 1 may lock, B₁.
+fn overlap(limit: &Arc, mirrored: &AngleSet, after: Option<&AngleSet>) -> f64 {
+    let before = mirrored.sum(limit);
+    after.map_or_else(|| before.measure(), |after| before.overlap(after))
 }
 
 #[cfg(test)]

@@ -17,11 +17,11 @@
 use super::block::{BlockView, PoseRecord};
 use super::clip::Box16;
 use super::first_joint::survives_any_lock;
-use super::turn16::{Arc16, STEP, angle_set};
+use super::runs::{Runs, arc, image};
+use super::turn16::{Arc16, angle_set};
 use crate::angle::{AngleSet, Arc};
 use crate::workspace::{ArtificialLimits, FailureSet};
 use serde::{Deserialize, Serialize};
-use smallvec::SmallVec;
 use std::f64::consts::TAU;
 
 /// How T is formed.
@@ -177,16 +177,14 @@ impl Limits16 {
     }
 
     /// T: the θ₁ values of the pre-image inside the limits of the other joints.
-    pub fn image<'p>(&self, joints: usize, pieces: impl Iterator<Item = &'p [u16]>) -> AngleSet {
-        AngleSet::from_arcs(pieces.flat_map(|piece| {
-            let runs = runs_of_theta_1(&self.rest, piece, joints);
-            match self.rule {
-                Rule::Definition => runs,
-                Rule::Paper => hull(&runs),
-            }
-            .into_iter()
-            .map(|[low, high]| Arc::from_interval(low, high))
-        }))
+    pub fn image(&self, view: &BlockView, pose: &PoseRecord) -> AngleSet {
+        match self.rule {
+            Rule::Definition => image(&self.rest, view.strands(pose)),
+            Rule::Paper => AngleSet::from_arcs(view.pieces(pose).filter_map(|piece| {
+                let runs = Runs::of(&self.rest, piece, view.joints);
+                around(&runs.all).map(|run| arc(&run))
+            })),
+        }
     }
 
     /// B₁ if joint 1 may lock, else all angles.
@@ -224,7 +222,7 @@ impl Limits16 {
         if self.is_free_of_joint_1() {
             return all_or_nothing(self.is_ever_inside(view, pose));
         }
-        let before = self.before_failure(&self.image(view.joints, view.pieces(pose)));
+        let before = self.before_failure(&self.image(view, pose));
         let after = self.after_lock_of_1(view.ranges(index).next().unwrap_or_default());
         self.with_physical(before.intersection(&after), view, pose)
     }
@@ -245,7 +243,7 @@ impl Limits16 {
                 0.0
             };
         }
-        let before = self.before_failure(&self.image(view.joints, view.pieces(pose)));
+        let before = self.before_failure(&self.image(view, pose));
         let after = self.after_lock_of_1(view.ranges(index).next().unwrap_or_default());
         before.overlap(&after)
     }
@@ -259,9 +257,7 @@ impl Limits16 {
     /// Whether any part of the pre-image lies in the box of the joints from 2 on.
     pub fn is_ever_inside(&self, view: &BlockView, pose: &PoseRecord) -> bool {
         self.rest.is_everything() && pose.pieces > 0
-            || view
-                .pieces(pose)
-                .any(|piece| self.rest.meets(piece, view.joints))
+            || view.strands(pose).any(|strand| self.rest.meets(strand))
     }
 }
 
@@ -286,48 +282,17 @@ fn fits_somewhere(limit: Arc16, range: &[Arc16]) -> bool {
         .any(|arc| arc.is_full() || arc.width >= limit.width && !limit.is_full())
 }
 
-/// Intervals of θ₁, radians, over the connected parts of `piece` inside the box; unwrapped within
-/// each part.
-pub(super) fn runs_of_theta_1(
-    limits: &Box16,
-    piece: &[u16],
-    joints: usize,
-) -> SmallVec<[[f64; 2]; 4]> {
-    let mut runs: SmallVec<[[f64; 2]; 4]> = SmallVec::new();
-    // Edge, parameter and unwrapped θ₁ (steps) at which the last part ended.
-    let mut ended = (usize::MAX, 0.0, 0);
-    limits.walk(piece, joints, |index, part, from, to| {
-        let step = i32::from(to[0].wrapping_sub(from[0]) as i16);
-        let continues = part[0] == 0.0 && ended.1 == 1.0 && ended.0.wrapping_add(1) == index;
-        let at = if continues {
-            ended.2
-        } else {
-            i32::from(from[0])
-        };
-        let value = |u: f64| (f64::from(at) + u * f64::from(step)) * STEP;
-        let (a, b) = (value(part[0]), value(part[1]));
-        let (low, high) = (a.min(b), a.max(b));
-        match runs.last_mut() {
-            Some(run) if continues => *run = [run[0].min(low), run[1].max(high)],
-            _ => runs.push([low, high]),
-        }
-        ended = (index, part[1], at + step);
-    });
-    runs
-}
-
 /// One interval around all parts of a manifold, as the papers have it.
 ///
 /// The papers unwrap θ₁ along the manifold; parts are given modulo a turn, so they are laid out
 /// next to the first one.
-fn hull(runs: &[[f64; 2]]) -> SmallVec<[[f64; 2]; 4]> {
-    let Some(&first) = runs.first() else {
-        return SmallVec::new();
-    };
+fn around(runs: &[[f64; 2]]) -> Option<[f64; 2]> {
+    const TURN: f64 = 65_536.0;
+    let first = *runs.first()?;
     let mut around = first;
     for run in &runs[1..] {
-        let shift = ((first[0] - run[0]) / TAU).round() * TAU;
+        let shift = ((first[0] - run[0]) / TURN).round() * TURN;
         around = [around[0].min(run[0] + shift), around[1].max(run[1] + shift)];
     }
-    SmallVec::from_iter([around])
+    Some(around)
 }

@@ -229,7 +229,7 @@ fn block_sums(view: &BlockView, limits: &Limits16, measures: usize) -> Vec<(usiz
 /// Measures of the rotation angles: S_F, W₀, unrestricted, then W_1 … W_n of every joint.
 fn pose_measures(view: &BlockView, index: usize, limits: &Limits16) -> Vec<f64> {
     let pose = &view.poses[index];
-    let image = limits.image(view.joints, view.pieces(pose));
+    let image = limits.image(view, pose);
     let before = limits.before_failure(&image);
     let mut ranges = view.ranges(index);
     let first = ranges.next().unwrap_or_default();

@@ -5,11 +5,15 @@ use crate::workspace::hybrid::{AtlasRecipe, AtlasSettings, Region, SamplePlan, S
 use std::sync::atomic::AtomicBool;
 
 fn atlas() -> Atlas {
+    atlas_of(vec![1.0, 1.0, 1.0], 400)
+}
+
+fn atlas_of(lengths: Vec<f64>, samples: u32) -> Atlas {
     let robot = Robot {
         name: "arm".into(),
         source: None,
         geometry: Geometry::Planar {
-            lengths: vec![1.0, 1.0, 1.0],
+            lengths: lengths.clone(),
         },
         physical_limits: None,
         tool: nalgebra::Isometry3::identity(),
@@ -17,18 +21,22 @@ fn atlas() -> Atlas {
     let plan = SamplePlan {
         task: TaskSpace::PlanarPosition,
         region: Region {
-            radius: 3.0,
+            radius: lengths.iter().sum(),
             lower: 0.0,
             upper: 0.0,
-            reach: 3.0,
+            reach: lengths.iter().sum(),
         },
         sampling: Sampling::Lattice {
-            samples: 400,
+            samples,
             replicates: 4,
         },
         seed: 1,
     };
-    let recipe = AtlasRecipe::new(&robot, plan, AtlasSettings::default()).unwrap();
+    let settings = AtlasSettings {
+        slices: 8,
+        ..AtlasSettings::default()
+    };
+    let recipe = AtlasRecipe::new(&robot, plan, settings).unwrap();
     recipe
         .build(None, &AtomicBool::new(false), &|_, _| ())
         .unwrap()
@@ -76,6 +84,40 @@ fn profiles_agree_with_single_scores() {
     }
     // Many of the 72 families hold limits with a workspace.
     assert!(positive >= 24, "{positive}");
+}
+
+/// The same where pre-images are surfaces, cut along joint 3.
+#[test]
+fn profiles_over_slices_agree_with_single_scores() {
+    let atlas = atlas_of(vec![1.0, 1.2, 1.1, 0.8], 80);
+    assert!(atlas.slabs[2] > 0.0);
+    let widths: Vec<f64> = (0..=30).map(|k| k as f64 * TAU / 30.0).collect();
+    let pairs = [
+        [-40.0, 40.0],
+        [-140.0, 100.0],
+        [-90.0, 100.0],
+        [-120.0, 150.0],
+    ];
+    let limits = ArtificialLimits::from_degrees(&pairs);
+    let mut positive = 0;
+    for failures in [FailureSet::any(4), FailureSet::of(4, &[4])] {
+        for joint in 0..4 {
+            for growth in [Growth::Lower, Growth::Upper, Growth::Both] {
+                let profile = atlas.profile(&limits, &failures, joint, growth, &widths);
+                for (&width, &found) in widths.iter().zip(&profile.unwrap()) {
+                    let changed = changed(&limits, joint, growth, width);
+                    let alone = atlas.fault_tolerant_size(&changed, &failures);
+                    positive += usize::from(alone > 0.0);
+                    let error = (found - alone).abs();
+                    assert!(
+                        error < 2e-3 * alone.max(1.0),
+                        "joint {joint} {growth:?} {width}: {found} against {alone}"
+                    );
+                }
+            }
+        }
+    }
+    assert!(positive > 200, "{positive}");
 }
 
 fn changed(
