@@ -286,10 +286,16 @@ fn poses_have_what_the_task_has() {
             "pose.rotation",
         ),
         (
-            &arm(4),
+            &arm(6),
             "planar-position",
             "[pose]\nposition = [1, 2]".into(),
             "task.space",
+        ),
+        (
+            &arm(3),
+            "planar-position",
+            "[pose]\nposition = [1, 2]\n[manifolds]\nslices = 8".into(),
+            "manifolds.slices",
         ),
         (
             &arm(3),
@@ -302,6 +308,8 @@ fn poses_have_what_the_task_has() {
         let error = with(robot, task, &text).unwrap_err();
         assert_eq!(error.key(), key, "{text}");
     }
+    let surface = "[pose]\nposition = [1, 2]\n[manifolds]\nslices = 8";
+    assert!(with(&arm(4), "planar-position", surface).is_ok());
 }
 
 #[test]
