@@ -54,12 +54,18 @@ pub(super) fn robot_study(
         "exact" => "",
         _ => ", on other samples",
     };
+    // Degrees come from radians: 69 is not to be 69.00000000000001.
+    let tidy =
+        |ends: &[f64]| -> Vec<f64> { ends.iter().map(|x| (x * 1e9).round() / 1e9).collect() };
     let text = format!(
         "# Measures the robot found anew{samples}.\nkind = \"estimate\"\ndesign = \
          \"robot.toml\"\nseed = 2\n\n[task]\nspace = \"{}\"\nfailures = {failures}\nmargin_deg = \
          {}\n\n[limits]\nlower_deg = {:?}\nupper_deg = {:?}\n\n[estimator]\nmethod = \
          \"{estimator}\"\n",
-        study.task, study.margin_deg, limits.lower_deg, limits.upper_deg
+        study.task,
+        study.margin_deg,
+        tidy(&limits.lower_deg),
+        tidy(&limits.upper_deg)
     );
     ("robot_study.toml".into(), text)
 }
