@@ -22,17 +22,6 @@ pub(super) const SHARD: u64 = 1024;
 /// Changes whenever the content of a block changes for the same question.
 const FORMAT: u32 = 4;
 
-/// Tolerance of the curves behind a focused atlas, as a share of the usual one.
-const FOCUSED: f64 = 1.0 / 16.0;
-
-/// Tolerance of the curves that ranges inside physical limits are taken from, as a share of the
-/// usual one.
-const CLOSE: f64 = 1.0 / 16.0;
-
-/// Least tolerance of curves that are slices of a surface, radians: slices lie many times as far
-/// from each other, and closer chords would only take time.
-const SLICED: f64 = 0.01;
-
 /// How an atlas is built.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct AtlasSettings {
@@ -146,15 +135,7 @@ impl AtlasRecipe {
         let is_sliced = degree > 1;
         Ok(AtlasRecipe {
             source: CurveSource::new(robot, plan.task, settings.slices, settings.search)?,
-            packing: Packing {
-                tolerance: match is_sliced {
-                    true => settings.tolerance.max(SLICED),
-                    false => settings.tolerance,
-                },
-                close: CLOSE * settings.tolerance,
-                physical: physical_arcs(robot),
-                focus: None,
-            },
+            packing: Packing::new(settings.tolerance, is_sliced, physical_arcs(robot)),
             robot: robot.clone(),
             plan,
             settings,
@@ -176,11 +157,8 @@ impl AtlasRecipe {
             (!is_free).then_some([limit.lower, limit.upper])
         });
         let faces = self.source.faces(&ends.collect::<Vec<_>>());
-        // Images of chords end inside those of curves. A focused atlas keeps no curves, so that
-        // finer ones cost no memory.
-        self.packing.tolerance = FOCUSED * self.settings.tolerance;
-        self.packing.close *= FOCUSED;
-        self.packing.focus = Some(Focus { limits, faces });
+        let focus = Focus { limits, faces };
+        self.packing = self.packing.focused(self.settings.tolerance, focus);
         self
     }
 

@@ -24,6 +24,43 @@ pub(super) struct Packing {
     pub focus: Option<Focus>,
 }
 
+/// Tolerance of the curves behind a focused atlas, as a share of the usual one.
+const FOCUSED: f64 = 1.0 / 16.0;
+
+/// Tolerance of the curves that ranges inside physical limits are taken from, as a share of the
+/// usual one.
+const CLOSE: f64 = 1.0 / 16.0;
+
+/// Least tolerance of curves that are slices of a surface, radians: slices lie many times as far
+/// from each other, and closer chords would only take time.
+const SLICED: f64 = 0.01;
+
+impl Packing {
+    /// Whole pre-images within `tolerance`.
+    pub fn new(tolerance: f64, is_sliced: bool, physical: Vec<Arc>) -> Packing {
+        Packing {
+            tolerance: match is_sliced {
+                true => tolerance.max(SLICED),
+                false => tolerance,
+            },
+            close: CLOSE * tolerance,
+            physical,
+            focus: None,
+        }
+    }
+
+    /// What `focus` needs. Images of chords end inside those of curves; no curves are kept, so
+    /// that finer ones cost no memory.
+    pub fn focused(self, tolerance: f64, focus: Focus) -> Packing {
+        Packing {
+            tolerance: FOCUSED * tolerance,
+            close: FOCUSED * self.close,
+            physical: self.physical,
+            focus: Some(focus),
+        }
+    }
+}
+
 /// The only limits that an atlas will be scored for.
 #[derive(Clone, Debug)]
 pub(super) struct Focus {
