@@ -128,7 +128,8 @@ impl SearchHistoryFigure {
         let spans = self.spans(panel);
         let needs_key = self.needs_key(panel);
         let bottom = panel.top + panel.height;
-        let mut key = Vec::new();
+        // Neighbours of one name share an entry: its first and last letter.
+        let mut key: Vec<([String; 2], &str)> = Vec::new();
         for (number, (stage, [from, to])) in spans.iter().enumerate() {
             if number > 0 {
                 canvas.stroke(&[[*from, panel.top - 2.0], [*from, bottom]], 0.5, GREY);
@@ -145,10 +146,18 @@ impl SearchHistoryFigure {
                 }
             };
             label.draw(canvas, [0.5 * (from + to), panel.top - 3.5]);
-            key.push(format!("{letter} {}", stage.name));
+            match key.last_mut() {
+                Some((letters, name)) if *name == stage.name => letters[1] = letter,
+                _ => key.push(([letter.clone(), letter], &stage.name)),
+            }
         }
         if needs_key {
             let at = [panel.left, panel.top - 13.5];
+            let entry = |([first, last], name): &([String; 2], &str)| match first == last {
+                true => format!("{first} {name}"),
+                false => format!("{first}–{last} {name}"),
+            };
+            let key: Vec<String> = key.iter().map(entry).collect();
             Label::new(&key.join(",  "), SMALL).draw_within(canvas, at, panel.width + 8.0);
         }
     }
@@ -228,11 +237,9 @@ impl Figure for SearchHistoryFigure {
     }
 
     fn caption(&self) -> String {
-        let names: Vec<&str> = self
-            .stages
-            .iter()
-            .map(|stage| stage.name.as_str())
-            .collect();
+        let names = self.stages.iter().map(|stage| stage.name.as_str());
+        let mut names: Vec<&str> = names.collect();
+        names.dedup();
         let stages = match names.is_empty() {
             true => String::new(),
             false => format!(" in the stages {}", names.join(", ")),

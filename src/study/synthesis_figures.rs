@@ -87,27 +87,23 @@ impl SynthesisFinding<'_> {
     fn history(&self, search: &Synthesis, winner: &Winner) -> SearchHistoryFigure {
         let merit = self.question.search.objectives[0];
         let scale = merit_scale(merit);
-        let mut stages: Vec<(u32, Stage, HistoryStage)> = Vec::new();
-        let runs = self.question.search.effort.runs;
-        let mut trials = 0;
+        let mut stages: Vec<HistoryStage> = Vec::new();
+        let mut part_before = None;
         for generation in search.history() {
-            let is_new = stages
-                .last()
-                .is_none_or(|last| (last.0, last.1) != (generation.run, generation.stage));
-            if is_new {
-                trials += 1;
-                let name = match generation.stage {
-                    Stage::Lengths if trials <= runs && runs > 1 => format!("trial {trials}"),
-                    Stage::Lengths => "lengths".into(),
-                    Stage::Refined => "refined".into(),
-                    Stage::All => "twists free".into(),
-                    Stage::RightAngles => "right angles".into(),
+            let part = (generation.run, generation.stage, generation.heat);
+            if part_before.replace(part) != Some(part) {
+                let name = match (generation.heat, generation.stage) {
+                    (Some(heat), _) => format!("heat {heat}"),
+                    (None, Stage::Lengths) => "lengths".into(),
+                    (None, Stage::Refined) => "refined".into(),
+                    (None, Stage::All) => "twists free".into(),
+                    (None, Stage::RightAngles) => "right angles".into(),
                 };
                 let generations = Vec::new();
                 let stage = HistoryStage { name, generations };
-                stages.push((generation.run, generation.stage, stage));
+                stages.push(stage);
             }
-            if let Some((_, _, stage)) = stages.last_mut() {
+            if let Some(stage) = stages.last_mut() {
                 let [upper, median, lower] = generation.quartiles.map(|score| scale * score);
                 stage.generations.push(HistoryGeneration {
                     at: generation.evaluations as f64,
@@ -122,7 +118,7 @@ impl SynthesisFinding<'_> {
             score_label: merit_axis(merit).into(),
             unit: merit_unit(merit).into(),
             axis_label: "robots assessed".into(),
-            stages: stages.into_iter().map(|(_, _, stage)| stage).collect(),
+            stages,
             reported: Some([scale * reported.value, scale * reported.error]),
             title: self.heading(),
         }

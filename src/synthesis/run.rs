@@ -32,6 +32,8 @@ pub struct Generation {
     pub run: u32,
     /// What the run changes.
     pub stage: Stage,
+    /// Heat of the trials, from 1; `None` after them.
+    pub heat: Option<u32>,
     /// Greatest score: a biased number, the luckiest of many.
     pub best: f64,
     /// Upper quartile, median and lower quartile.
@@ -149,6 +151,7 @@ impl Run {
             evaluations: 0,
             run: self.number,
             stage: self.stage,
+            heat: None,
             best: at(0.0),
             quartiles: [at(0.25), at(0.5), at(0.75)],
         }

@@ -339,6 +339,9 @@ impl Synthesis {
         let mut generation = self.runs[index].advance(problem, self.seed);
         self.evaluations += u64::from(self.runs[index].population());
         generation.evaluations = self.evaluations;
+        if let Phase::Trials { heat, .. } = self.phase {
+            generation.heat = Some(heat + 1);
+        }
         self.history.push(generation);
     }
 
