@@ -467,23 +467,32 @@ fn the_better_half_of_the_runs_goes_on() {
 /// R_z(θ) T_z(d) T_x(a) R_x(α) R_z(π) = R_z(θ + π) T_z(d) T_x(-a) R_x(-α).
 #[test]
 fn links_with_negative_lengths_are_the_same_links() {
-    let problem = problem(7, &[-FRAC_PI_2, FRAC_PI_2], 0.5);
+    let mut problem = problem(7, &[-FRAC_PI_2, FRAC_PI_2], 0.5);
+    problem.atlas.tolerance = 0.002;
+    // Each of these robots has random starts of its own; none may miss a manifold.
+    problem.atlas.search = SearchSettings::default();
     let mut rng = faultspace::sampling::stream(11, 0);
     let links = problem.links.random(&mut rng);
     let look = Look {
-        samples: 2000,
+        samples: 1000,
         seed: 3,
         replicates: 1,
     };
     let fitted = problem.draft(&links, &[], look, Care::Scratch).unwrap();
-    // Measured anew: while searching fewer random starts are made.
-    let before = problem.measured(&links, &fitted.limits, look).unwrap();
+    // Fitted limits end where one of the samples ends, so that round-off would decide about it.
+    let whole = |end: f64| end.to_degrees().round().to_radians();
+    let joints = fitted.limits.joints().iter();
+    let limits: Vec<JointLimit> = joints
+        .map(|limit| JointLimit::new(whole(limit.lower), whole(limit.upper)))
+        .collect();
+    let before = ArtificialLimits::new(limits.clone());
+    let before = problem.measured(&links, &before, look).unwrap();
     assert!(before.measures.share.value > 0.0);
     for row in 0..6 {
         let mut turned = links.clone();
         turned[row].length *= -1.0;
         turned[row].twist *= -1.0;
-        let mut limits = fitted.limits.joints().to_vec();
+        let mut limits = limits.clone();
         for limit in &mut limits[row..row + 2] {
             *limit = JointLimit::new(limit.lower + PI, limit.upper + PI);
         }
@@ -492,7 +501,7 @@ fn links_with_negative_lengths_are_the_same_links() {
         let limits = ArtificialLimits::new(limits);
         let same = problem.measured(&turned, &limits, look).unwrap().measures;
         let [a, b] = [&before.measures, &same].map(|m| (m.share.value, m.fill.value));
-        assert!((a.0 - b.0).abs() < 2e-3 * a.0, "row {row}: {a:?} {b:?}");
+        assert!((a.0 - b.0).abs() < 3e-3 * a.0, "row {row}: {a:?} {b:?}");
         assert!((a.1 - b.1).abs() < 1e-3 * a.1, "row {row}: {a:?} {b:?}");
     }
 }
