@@ -95,7 +95,8 @@ fn profiles_over_slices_agree_with_single_scores() {
     let pairs = [
         [-40.0, 40.0],
         [-140.0, 100.0],
-        [-90.0, 100.0],
+        // No end lies in the middle between two slices, where round-off decides.
+        [-91.0, 100.0],
         [-120.0, 150.0],
     ];
     let limits = ArtificialLimits::from_degrees(&pairs);
