@@ -103,7 +103,9 @@ fn nothing_but_lists() {
     let dir = folder(
         "spatial_4r",
         "spatial-position",
-        "links = [{ a = 0.25 }, { a = 0.25, d = 0 }, { a = 0.25, d = 0 }, { a = 0.25, d = 0 }]",
+        "links = [{ a = 0.25 }, { a = 0.25, d = 0 }, { a = 0.25, d = 0 }, { a = 0.25, d = 0 }]\n\
+         screened = 4\ngenerations = 1\ntrial_generations = 1\npopulation = 4\nsamples = 100\n\
+         fit_samples = 300\nselection_samples = 1024\nreport_samples = 1024\ncheck_poses = 0",
     );
     let mut command = Command::cargo_bin("faultspace").unwrap();
     let command = command.current_dir(dir.path());
