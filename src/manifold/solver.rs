@@ -51,7 +51,7 @@ impl Default for SearchSettings {
 
 impl SearchSettings {
     /// For scores that are compared while searching, with half the starts of
-    /// [`SearchSettings::coarse`]: one manifold in a hundred is missed.
+    /// [`SearchSettings::coarse`]: more task points are incomplete than with these.
     pub fn sparse() -> SearchSettings {
         SearchSettings {
             least_seeds: 16,
