@@ -120,6 +120,36 @@ fn planar_positions_agree_with_the_closed_form() {
     }
 }
 
+/// The closed form is 12.6 % of 9π; inverse kinematics knows neither it nor the manifolds.
+#[test]
+fn inverse_kinematics_checks_what_was_measured() {
+    let place = Place::new(R3, POSITION, "samples = 4096\ncheck_poses = 2000");
+    let result = place.result("out", &[]);
+    let check = &result["locked_joint_check"];
+    assert_eq!(check["poses"], 2000);
+    let share = &check["share"];
+    let exact = 3.562 / 28.274_333_9;
+    assert_agrees_loosely(share, exact);
+    let off = number(&check["difference_in_standard_errors"]);
+    let measured = number(&result["size"]["normalised"]);
+    assert_eq!(off > 0.0, number(&share["value"]) > measured);
+    let notes = result["notes"].to_string();
+    assert!(notes.contains("Inverse kinematics"), "{notes}");
+    assert_eq!(notes.contains("do not rely"), off.abs() > 3.0, "{notes}");
+    let said = place.done(&["run", "study.toml", "--quiet", "--overwrite"]);
+    assert!(said.contains("the same, checked"), "{said}");
+
+    let unasked = Place::new(R3, POSITION, "samples = 4096").result("out", &[]);
+    assert!(unasked["locked_joint_check"].is_null());
+    assert_eq!(unasked["size"], result["size"], "a check changes nothing");
+}
+
+/// Within four standard errors of an estimate that few poses give.
+fn assert_agrees_loosely(estimate: &Value, exact: f64) {
+    let [value, error] = ["value", "standard_error"].map(|key| number(&estimate[key]));
+    assert!((value - exact).abs() < 4.0 * error && error < 0.1 * exact);
+}
+
 #[test]
 fn planar_poses_agree_with_the_exact_estimator() {
     let head = "kind = \"estimate\"\n[task]\nspace = \"planar-pose\"\n[limits]\n\
@@ -288,6 +318,8 @@ fn what_does_not_fit_is_refused_before_anything_is_written() {
         &["--no-cache"],
         &["too many samples", "`orientations`"],
     );
+    let place = Place::new(R3, POSITION, "rule = \"paper\"\ncheck_poses = 10");
+    assert_refused(&place, &[], &["check_poses", "definition", "remove"]);
     let place = Place::new(R3, POSITION, "samples = 4096");
     let parts = ["cache folder cannot be written to", "--no-cache"];
     assert_refused(&place, &["--cache", "arm.toml/x"], &parts);

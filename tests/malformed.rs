@@ -33,10 +33,10 @@ const STUDIES: [&str; 5] = [
     "kind = \"estimate\"\ndesign = \"arm.toml\"\n[task]\nspace = \"planar-position\"\n[limits]\n\
      lower_deg = [-18, -111, -111]\nupper_deg = [18.0, 111, 249]\n[estimator]\n\
      method = \"hybrid\"\n[estimator.hybrid]\nsampling = \"lattice\"\nsamples = 1000\n\
-     replicates = 8\ntolerance_rad = 0.02\nmemory_limit_mb = 100\nrule = \"paper\"\n",
+     replicates = 8\ntolerance_rad = 0.02\nmemory_limit_mb = 100\nrule = \"definition\"\ncheck_poses = 20\n",
     "kind = \"optimise\"\ndesign = \"arm.toml\"\n[task]\nspace = \"planar-position\"\n\
      [estimator]\nmethod = \"hybrid\"\n[estimator.hybrid]\nsampling = \"grid\"\ncell = 0.05\n\
-     orientations = 1\ncentres = true\n",
+     orientations = 1\ncentres = true\nrule = \"paper\"\n",
     "kind = \"manifolds\"\ndesign = \"arm.toml\"\n[task]\nspace = \"planar-position\"\n[pose]\n\
      position = [1.0, 0.5]\n[limits]\nlower_deg = [-18, -111, -111]\n\
      upper_deg = [18.0, 111, 249]\n[manifolds]\nseeds = 64\nresidual = 1e-9\n",

@@ -121,6 +121,12 @@ fn a_quick_search_in_space() {
         (measured - found).abs() < 4.0 * error.hypot(off),
         "{measured} against {found}"
     );
+    let check = &again["locked_joint_check"];
+    assert_eq!(check["poses"], 10_000);
+    assert!(
+        value(&check["difference_in_standard_errors"]).abs() < 4.0,
+        "{check}"
+    );
     let text = std::fs::read_to_string(out("whole").join("robot.urdf")).unwrap();
     assert_eq!(text.matches("type=\"continuous\"").count(), 4);
 
@@ -420,7 +426,7 @@ fn the_better_half_of_the_runs_goes_on() {
         runs: 6,
         trial_generations: 1,
         full_runs: 3,
-        generations: 2,
+        generations: 6,
         population: 4,
         samples: 100,
         patience: 10,
@@ -438,20 +444,21 @@ fn the_better_half_of_the_runs_goes_on() {
     assert!(progress.is_sorted(), "{progress:?}");
     assert_eq!((progress[0], progress.last()), (0.0, Some(&1.0)));
     let generations = |run: u32| search.history().iter().filter(|g| g.run == run).count();
-    // One heat, then two generations more for three of the six.
+    // One heat, then six generations more for three of the six.
     let mut lengths: Vec<usize> = (0..6).map(generations).collect();
     lengths.sort();
-    assert_eq!(lengths, [1, 1, 1, 3, 3, 3]);
+    assert_eq!(lengths, [1, 1, 1, 7, 7, 7]);
     let refined: Vec<u32> = (100..106).filter(|&run| generations(run) > 0).collect();
     assert_eq!(refined.len(), 2);
-    assert!(refined.iter().all(|&run| generations(run - 100) == 3));
-    // Of the runs that ended, those that went on had the better medians.
+    assert!(refined.iter().all(|&run| generations(run - 100) == 7));
+    // Of the runs that ended, those that went on had the better medians of late.
     let last = |run: u32| {
         let of_run = search.history().iter().filter(|g| g.run == run);
         let medians: Vec<f64> = of_run.map(|g| g.quartiles[1]).collect();
-        medians.iter().sum::<f64>() / medians.len() as f64
+        let late = &medians[medians.len() - 5..];
+        late.iter().sum::<f64>() / late.len() as f64
     };
-    let ended: Vec<u32> = (0..6).filter(|&run| generations(run) == 3).collect();
+    let ended: Vec<u32> = (0..6).filter(|&run| generations(run) == 7).collect();
     let dropped = ended.iter().find(|&&run| !refined.contains(&(run + 100)));
     for run in &refined {
         assert!(last(run - 100) >= last(*dropped.unwrap()));
@@ -501,7 +508,7 @@ fn links_with_negative_lengths_are_the_same_links() {
         let limits = ArtificialLimits::new(limits);
         let same = problem.measured(&turned, &limits, look).unwrap().measures;
         let [a, b] = [&before.measures, &same].map(|m| (m.share.value, m.fill.value));
-        assert!((a.0 - b.0).abs() < 3e-3 * a.0, "row {row}: {a:?} {b:?}");
+        assert!((a.0 - b.0).abs() < 2e-3 * a.0, "row {row}: {a:?} {b:?}");
         assert!((a.1 - b.1).abs() < 1e-3 * a.1, "row {row}: {a:?} {b:?}");
     }
 }

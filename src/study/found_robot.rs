@@ -54,14 +54,20 @@ pub(super) fn robot_study(
         "exact" => "",
         _ => ", on other samples",
     };
+    // Two neighbouring seeds have no samples in common; a study file holds none above 2^63 - 1.
+    let seed = study.seed % i64::MAX as u64 + 1;
+    let check = match estimator {
+        "exact" => "",
+        _ => "\n[estimator.hybrid]\ncheck_poses = 10000\n",
+    };
     // Degrees come from radians: 69 is not to be 69.00000000000001.
     let tidy =
         |ends: &[f64]| -> Vec<f64> { ends.iter().map(|x| (x * 1e9).round() / 1e9).collect() };
     let text = format!(
         "# Measures the robot found anew{samples}.\nkind = \"estimate\"\ndesign = \
-         \"robot.toml\"\nseed = 2\n\n[task]\nspace = \"{}\"\nfailures = {failures}\nmargin_deg = \
+         \"robot.toml\"\nseed = {seed}\n\n[task]\nspace = \"{}\"\nfailures = {failures}\nmargin_deg = \
          {}\n\n[limits]\nlower_deg = {:?}\nupper_deg = {:?}\n\n[estimator]\nmethod = \
-         \"{estimator}\"\n",
+         \"{estimator}\"\n{check}",
         study.task,
         study.margin_deg,
         tidy(&limits.lower_deg),

@@ -1,12 +1,13 @@
 //! The content of `result.json` of a hybrid study, described in `docs/result.md`.
 
+use super::locked_check;
 use super::optimise::Optimum;
 use super::result::{SCHEMA, limits_deg, provenance, search, status, workspaces};
 use super::settings::{DegreeLimits, Question, Study};
 use super::structure;
 use crate::manifold::Intolerance;
-use crate::workspace::WorkspaceSizes;
 use crate::workspace::hybrid::{Atlas, SamplePlan, Sampling};
+use crate::workspace::{LockedJointEstimate, WorkspaceSizes};
 use serde_json::{Value, json};
 
 /// Everything that a finished hybrid study knows.
@@ -21,6 +22,8 @@ pub(super) struct HybridFinding<'a> {
     pub structure: Option<&'a Intolerance>,
     /// Standard error of the optimum's S_F on the samples of its search.
     pub searched_error: Option<f64>,
+    /// The same workspaces by inverse kinematics, if the study asks for it.
+    pub check: Option<&'a LockedJointEstimate>,
     pub seconds: Value,
     pub threads: usize,
     pub notes: &'a [String],
@@ -54,6 +57,10 @@ impl HybridFinding<'_> {
             result["search"] = search(optimum, optimise);
             result["search"]["score_on_search_sample"] = json!(optimum.score());
             result["search"]["standard_error_on_search_sample"] = json!(self.searched_error);
+        }
+        if let Some(check) = self.check {
+            let share = locked_check::share(self.sizes);
+            result["locked_joint_check"] = locked_check::to_json(check, &share);
         }
         if let Some(verdict) = self.structure {
             result["structure"] = structure::to_json(verdict);

@@ -5,6 +5,7 @@ use super::hybrid_arm::{Needed, Samples, check_cache};
 use super::hybrid_result::HybridFinding;
 use super::hybrid_sensitivity::sensitivity;
 use super::hybrid_settings::Hybrid;
+use super::locked_check::{self, Checked};
 use super::optimise::{Coarse, Optimum, Terms, search};
 use super::parts::parts;
 use super::report_parts::{convergence, failures_label, formats, provenance_rows, size_notes};
@@ -16,10 +17,11 @@ use super::structure;
 use crate::design::JointKind;
 use crate::manifold::Intolerance;
 use crate::objective::{DesignSpace, HybridObjective};
-use crate::report::{self, Report, Sensitivity, write_report};
+use crate::report::{self, Report, Sensitivity, with_error, write_report};
 use crate::workspace::hybrid::{Atlas, Rule};
-use crate::workspace::{ArtificialLimits, Estimate, WorkspaceSizes};
+use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate, WorkspaceSizes};
 use serde_json::{Value, json};
+use std::sync::atomic::Ordering;
 use std::time::Instant;
 
 /// Most sweeps of a search over an atlas.
@@ -184,8 +186,12 @@ impl Run<'_> {
         let started = Instant::now();
         let sizes = atlas.sizes(limits, &study.failures, self.hybrid.rule);
         let measured = started.elapsed().as_secs_f64();
+        let started = Instant::now();
+        let check = self.check(limits, best)?;
+        let checked = started.elapsed().as_secs_f64();
         session.progress.update(1, 2, best, "writing the report");
-        let notes = self.notes(atlas, &sizes, limits, optimum.is_some());
+        let mut notes = self.notes(atlas, &sizes, limits, optimum.is_some());
+        notes.extend(check.iter().flat_map(|check| check_notes(check, &sizes)));
         let finding = HybridFinding {
             study,
             limits: written,
@@ -194,11 +200,13 @@ impl Run<'_> {
             optimum,
             structure: self.verdict.as_ref(),
             searched_error: searched.map(|searched| searched.size.error),
+            check: check.as_ref(),
             seconds: json!({
                 "total": session.store.seconds(),
                 "atlas": self.tracing,
                 "search": self.searching,
                 "measure": measured,
+                "check": checked,
             }),
             threads: rayon::current_num_threads(),
             notes: &notes,
@@ -221,6 +229,32 @@ impl Run<'_> {
             report::write_json(&path, &result).map_err(anyhow::Error::from)?;
         }
         Ok(result)
+    }
+
+    /// The workspaces by inverse kinematics, if the study asks for it.
+    fn check(
+        &self,
+        limits: &ArtificialLimits,
+        best: f64,
+    ) -> Result<Option<LockedJointEstimate>, RunError> {
+        let session = &self.ready.session;
+        let checked = Checked {
+            study: self.study,
+            robot: &self.study.design.robot,
+            limits,
+            failures: &self.study.failures,
+            poses: self.hybrid.check_poses,
+        };
+        let watch = |done: u64, of: u64| {
+            let what = "checking by inverse kinematics";
+            session.progress.update(done, of, best, what);
+        };
+        let stop = || session.interrupt.load(Ordering::SeqCst);
+        let counted = checked.count(&watch, &stop);
+        match stop() {
+            true => Err(RunError::Interrupted),
+            false => Ok(counted),
+        }
     }
 
     fn report<'r>(
@@ -294,4 +328,18 @@ impl Run<'_> {
         }
         notes
     }
+}
+
+/// What the check says about the number that it checks.
+fn check_notes(check: &LockedJointEstimate, sizes: &WorkspaceSizes) -> Vec<String> {
+    let (own, reported) = (check.fault_tolerant_share(), locked_check::share(sizes));
+    let said = format!(
+        "Inverse kinematics with locked joints, an independent way, finds S_F / S_0max = {} % on {} \
+         reachable task points: {:.1} standard errors of the difference away.",
+        with_error(100.0 * own.value, 100.0 * own.error),
+        check.reachable,
+        locked_check::distance(check, &reported).abs()
+    );
+    let contradiction = locked_check::contradiction(check, &reported);
+    [said].into_iter().chain(contradiction).collect()
 }

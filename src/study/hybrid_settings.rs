@@ -20,6 +20,9 @@ pub struct Hybrid {
     pub slices: u64,
     /// How the workspace before a failure is formed, default the definition.
     pub rule: Rule,
+    /// Reachable task points on which inverse kinematics with locked joints checks the result,
+    /// default 0: none.
+    pub check_poses: u64,
 }
 
 /// Which task points are taken.
@@ -57,6 +60,7 @@ impl Hybrid {
             memory_limit_mb: settings.memory_limit >> 20,
             slices: settings.slices as u64,
             rule: Rule::default(),
+            check_poses: 0,
         }
     }
 

@@ -19,10 +19,14 @@ const KEYS: &[&str] = &[
     "memory_limit_mb",
     "slices",
     "rule",
+    "check_poses",
 ];
 
 /// Most samples in all; an atlas of more fits no memory.
 pub(super) const MOST_SAMPLES: u64 = 100_000_000;
+
+/// Most task points of a check by inverse kinematics: hours.
+const MOST_CHECKED: u64 = 10_000_000;
 
 /// Samples of a replicate at least, so that its estimate means something.
 const LEAST_OF_REPLICATE: u64 = 16;
@@ -43,6 +47,7 @@ pub(super) struct HybridTable {
     memory_limit_mb: Option<u64>,
     slices: Option<u64>,
     rule: Option<Item<Rule>>,
+    check_poses: Option<Item<u64>>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -71,6 +76,7 @@ pub(super) fn read(estimator: &Table) -> Option<HybridTable> {
             .map(|item| item.value),
         slices: table.integer("slices", 8..=1024).map(|item| item.value),
         rule: table.choice("rule", &rules),
+        check_poses: table.integer("check_poses", 0..=MOST_CHECKED),
     })
 }
 
@@ -95,12 +101,17 @@ pub(super) fn settings(
             table.grid(task, problems)
         }
     };
+    table.refuse_check_of_another_rule(problems);
     Hybrid {
         sampling,
         tolerance_rad: table.tolerance_rad.unwrap_or(default.tolerance_rad),
         memory_limit_mb: table.memory_limit_mb.unwrap_or(default.memory_limit_mb),
         slices: table.slices.unwrap_or(default.slices),
         rule: table.rule.as_ref().map_or(default.rule, |item| item.value),
+        check_poses: table
+            .check_poses
+            .as_ref()
+            .map_or(default.check_poses, |item| item.value),
     }
 }
 
@@ -125,6 +136,23 @@ impl HybridTable {
                 "the paper's rule takes intervals of joint 1's angle, and joint 1 of this robot slides",
                 "\"definition\"",
                 "remove `rule`",
+            );
+        }
+    }
+
+    /// Inverse kinematics checks the definition, which the paper's rule is not.
+    fn refuse_check_of_another_rule(&self, problems: &Problems) {
+        let asked = self.check_poses.as_ref().filter(|item| item.value > 0);
+        let differs = self
+            .rule
+            .as_ref()
+            .is_some_and(|rule| rule.value == Rule::Paper);
+        if let Some(item) = asked.filter(|_| differs) {
+            problems.reject(
+                &item.place,
+                "inverse kinematics checks workspaces by their definition, and `rule` is another",
+                "`rule = \"definition\"`",
+                "remove `check_poses` or `rule`",
             );
         }
     }

@@ -22,6 +22,7 @@ mod largest_run;
 mod limits;
 mod load;
 mod location_result;
+mod locked_check;
 mod manifold_report;
 mod manifold_result;
 mod manifold_run;

@@ -15,7 +15,7 @@ const PARTS: [(u64, usize); 2] = [(16, 6), (4, 3)];
 /// dimensions they fill, the more it takes. The 7R arm's best limits are missed with 6000.
 fn fewest(task: TaskSpace) -> u64 {
     match task {
-        TaskSpace::PlanarPosition | TaskSpace::SpatialPosition => 500,
+        TaskSpace::PlanarPosition | TaskSpace::SpatialPosition => 300,
         TaskSpace::PlanarPose => 2000,
         TaskSpace::SpatialPose => 10_000,
     }

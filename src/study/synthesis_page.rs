@@ -1,5 +1,6 @@
 //! The page of `kind = "synthesis"`: sentences and tables.
 
+use super::locked_check::{self, contradiction};
 use super::settings::DegreeLimits;
 use super::synthesis_merit::{merit_label, merit_text};
 use super::synthesis_result::{Reference, SynthesisFinding, Winner, parameter_name};
@@ -49,15 +50,12 @@ impl SynthesisFinding<'_> {
             sentences.push(self.compared(merit, winner, reference));
         }
         if let Some(check) = &winner.check {
-            let share = check.fault_tolerant_share();
-            let error = share.error.hypot(winner.measures.share.error);
-            let off = (share.value - winner.measures.share.value) / error;
             sentences.push(format!(
                 "Inverse kinematics with locked joints, an independent way, finds S_F / S_0max = {} \
                  on {} reachable task points: {:.1} standard errors of the difference away.",
-                percent(&share),
+                percent(&check.fault_tolerant_share()),
                 check.reachable,
-                off.abs()
+                locked_check::distance(check, &winner.measures.share).abs()
             ));
         }
         sentences
@@ -97,16 +95,9 @@ impl SynthesisFinding<'_> {
             "{} change neither S_F nor S_0max. They are 0 here and may be given any value.",
             names.join(", ")
         ));
-        if let Some(check) = self.winner.and_then(|winner| winner.check.as_ref()) {
-            let share = check.fault_tolerant_share();
-            let reported = self.winner.map_or(share, |winner| winner.measures.share);
-            if (share.value - reported.value).abs() > 3.0 * share.error.hypot(reported.error) {
-                notes.push(
-                    "The independent check disagrees with the reported share by more than three \
-                     standard errors: do not rely on the number."
-                        .into(),
-                );
-            }
+        if let Some(winner) = self.winner {
+            let check = winner.check.as_ref();
+            notes.extend(check.and_then(|c| contradiction(c, &winner.measures.share)));
         }
         notes.extend(self.off_reach_note());
         notes.extend(self.objectives_notes());

@@ -1,6 +1,7 @@
 //! The result of `kind = "synthesis"`: numbers, files and page.
 
 use super::found_robot;
+use super::locked_check;
 use super::report_parts::{formats, provenance_rows};
 use super::result::{SCHEMA, limits_deg, provenance};
 use super::run::{RunError, RunOptions};
@@ -191,7 +192,7 @@ impl SynthesisFinding<'_> {
             });
         }
         if let Some(check) = &winner.check {
-            result["locked_joint_check"] = check_json(check, &winner.measures.share);
+            result["locked_joint_check"] = locked_check::to_json(check, &winner.measures.share);
         }
         if !winner.sensitivity.is_empty() {
             let each = winner.sensitivity.iter().map(|s| self.sensitivity_json(s));
@@ -321,18 +322,6 @@ fn margins(winner: &Winner) -> Value {
         "points": winner.margins.iter().map(point).collect::<Vec<Value>>(),
         "ten_percent_deg": tenth.map(|margin| margin.value.to_degrees()),
         "standard_error_deg": tenth.map(|margin| margin.error.to_degrees()),
-    })
-}
-
-/// The check beside the number it checks: their difference in standard errors.
-fn check_json(check: &LockedJointEstimate, reported: &Estimate) -> Value {
-    let share = check.fault_tolerant_share();
-    let error = share.error.hypot(reported.error);
-    json!({
-        "poses": check.reachable,
-        "share": estimate(&share),
-        "pre_failure_share": estimate(&check.pre_failure_share()),
-        "difference_in_standard_errors": (share.value - reported.value) / error,
     })
 }
 

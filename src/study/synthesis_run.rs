@@ -1,6 +1,7 @@
 //! Runs `kind = "synthesis"`: searches robots, then measures, checks and reports the winner.
 
 use super::checkpoint::Stage;
+use super::locked_check::Checked;
 use super::run::{Ready, RunError, RunOptions};
 use super::settings::Study;
 use super::synthesis_check::SynthesisQuestion;
@@ -10,7 +11,7 @@ use crate::synthesis::{
     Arm, Care, DesignProblem, Draft, Links, Look, ParameterSensitivity, ParetoSearch, Purpose,
     REPLICATES, Synthesis, Tolerances, sample_seed,
 };
-use crate::workspace::{ArtificialLimits, LockedJointCheck, LockedJointEstimate};
+use crate::workspace::{ArtificialLimits, LockedJointEstimate};
 use serde_json::Value;
 use std::sync::atomic::Ordering;
 
@@ -212,17 +213,6 @@ impl Run<'_> {
 
     /// The same share by another way: inverse kinematics with locked joints on random task points.
     fn check(&self, arm: &Arm, draft: &Draft) -> Result<Option<LockedJointEstimate>, RunError> {
-        let poses = self.question.search.effort.check_poses;
-        if poses == 0 {
-            return Ok(None);
-        }
-        let (study, failures) = (self.study, &self.problem.failures);
-        let check = LockedJointCheck {
-            poses,
-            margin: failures.margin(),
-            seed: sample_seed(study.seed, Purpose::Check, 0),
-            ..LockedJointCheck::default()
-        };
         let watch = |done: u64, of: u64| {
             let share = done as f64 / of.max(1) as f64;
             self.tell(
@@ -232,8 +222,14 @@ impl Run<'_> {
             );
         };
         let stop = || self.ready.session.interrupt.load(Ordering::SeqCst);
-        let limits = &draft.limits;
-        let estimate = check.run(&arm.robot, study.task, limits, failures, &watch, &stop);
+        let checked = Checked {
+            study: self.study,
+            robot: &arm.robot,
+            limits: &draft.limits,
+            failures: &self.problem.failures,
+            poses: self.question.search.effort.check_poses,
+        };
+        let estimate = checked.count(&watch, &stop);
         self.check_interrupt()?;
         Ok(estimate)
     }

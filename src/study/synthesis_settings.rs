@@ -149,7 +149,7 @@ impl Effort {
         fit_samples: 2000,
         selection_samples: 4000,
         report_samples: 8000,
-        check_poses: 100,
+        check_poses: 300,
         sensitivity_samples: 0,
     };
     /// Minutes: the default.
@@ -166,7 +166,7 @@ impl Effort {
         fit_samples: 20_000,
         selection_samples: 30_000,
         report_samples: 100_000,
-        check_poses: 1000,
+        check_poses: 10_000,
         sensitivity_samples: 8000,
     };
     /// Half an hour, with twice as many starts: two of them are followed to their end.
@@ -183,7 +183,7 @@ impl Effort {
         fit_samples: 30_000,
         selection_samples: 50_000,
         report_samples: 200_000,
-        check_poses: 3000,
+        check_poses: 30_000,
         sensitivity_samples: 20_000,
     };
 }

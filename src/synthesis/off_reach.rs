@@ -11,10 +11,15 @@ use crate::sampling::stream;
 /// Robots whose reach is off by more than this are of another size.
 const NEAR: f64 = 0.01;
 
+/// Whether a reach counts as the reach 1.
+pub(super) fn is_one(reach: f64) -> bool {
+    (reach - 1.0).abs() <= NEAR
+}
+
 impl LinkSpace {
     /// Whether settled `links` have the reach 1.
     pub fn has_reach(&self, links: &Links) -> bool {
-        (self.reach(links) - 1.0).abs() <= NEAR
+        is_one(self.reach(links))
     }
 
     /// The random robot with this number in a search with `seed`, settled.

@@ -2,6 +2,7 @@
 
 use super::assessment::{Care, DesignProblem, Draft, Look};
 use super::link_space::{Column, Links};
+use super::off_reach::is_one;
 use super::seeds::{Purpose, sample_seed};
 use crate::optimiser::CmaEs;
 use crate::sampling::stream;
@@ -34,6 +35,8 @@ pub struct Generation {
     pub stage: Stage,
     /// Heat of the trials, from 1; `None` after them.
     pub heat: Option<u32>,
+    /// Robots that the bounds keep from the reach; they score 0.
+    pub off_reach: u32,
     /// Greatest score: a biased number, the luckiest of many.
     pub best: f64,
     /// Upper quartile, median and lower quartile.
@@ -123,15 +126,16 @@ impl Run {
                 0 => Care::Scratch,
                 _ => Care::Refit,
             };
-            let draft = match (reach - 1.0).abs() < 0.01 {
+            let has_reach = is_one(reach);
+            let draft = match has_reach {
                 true => problem.draft(&links, &self.inherited, look, care),
                 false => None,
             };
             // The point that was assessed, at the size that was drawn.
             let settled = problem.links.coordinates(&links, &self.variables);
-            (self.at_scale(&settled, scale), draft)
+            (self.at_scale(&settled, scale), draft, has_reach)
         };
-        let assessed: Vec<(Vec<f64>, Option<Draft>)> =
+        let assessed: Vec<(Vec<f64>, Option<Draft>, bool)> =
             drawn.par_iter().enumerate().map(assess).collect();
         let score = |k: usize| assessed[k].1.as_ref().map_or(0.0, |draft| draft.score);
         let mut order: Vec<usize> = (0..assessed.len()).collect();
@@ -152,6 +156,7 @@ impl Run {
             run: self.number,
             stage: self.stage,
             heat: None,
+            off_reach: assessed.iter().filter(|robot| !robot.2).count() as u32,
             best: at(0.0),
             quartiles: [at(0.25), at(0.5), at(0.75)],
         }

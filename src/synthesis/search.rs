@@ -247,23 +247,27 @@ impl Synthesis {
                 problem.links.random(&mut stream(seed, 0))
             }
         };
-        let looked: Vec<Option<Draft>> = numbers
+        let looked: Vec<(bool, Option<Draft>)> = numbers
             .clone()
             .into_par_iter()
             .map(|number| {
                 let links = robot(number);
-                let verdict = problem.verdict(&links);
-                match verdict {
-                    Some(_) => None,
-                    None => problem.draft(&links, &[], look, Care::Scratch),
+                // Of another size, it could not be compared.
+                if !problem.links.has_reach(&links) {
+                    return (false, None);
+                }
+                match problem.verdict(&links) {
+                    Some(_) => (true, None),
+                    None => (false, problem.draft(&links, &[], look, Care::Scratch)),
                 }
             })
             .collect();
         self.evaluations += looked.len() as u64;
-        self.intolerant += looked.iter().filter(|draft| draft.is_none()).count() as u32;
-        let score = |draft: &Option<Draft>| draft.as_ref().map_or(0.0, |draft| draft.score);
+        self.intolerant += looked.iter().filter(|(intolerant, _)| *intolerant).count() as u32;
+        let score = |(_, draft): &(bool, Option<Draft>)| draft.as_ref().map_or(0.0, |d| d.score);
         self.screening.extend(looked.iter().map(score));
-        self.drafts.extend(looked.into_iter().flatten());
+        self.drafts
+            .extend(looked.into_iter().filter_map(|(_, draft)| draft));
         self.sort_drafts();
         self.screened = numbers.end;
         if self.screened >= all {
