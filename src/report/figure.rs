@@ -17,8 +17,8 @@ pub enum Format {
     Svg,
 }
 
-/// A figure of a report.
-pub trait Figure: std::fmt::Debug {
+/// A figure of a report. Figures of a report are drawn at the same time.
+pub trait Figure: std::fmt::Debug + Sync {
     /// Stem of its files, as in `workspace.png`.
     fn name(&self) -> &str;
     /// A sentence that tells what is to be seen, as plain text.

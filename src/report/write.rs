@@ -12,6 +12,7 @@ use super::sizes_figure::SizesFigure;
 use super::style::COLUMN;
 use super::workspace_figure::WorkspaceFigure;
 use crate::workspace::{ArtificialLimits, FailureSet, SpatialShareMap, WorkspaceSizes};
+use rayon::prelude::*;
 use std::path::{Path, PathBuf};
 
 /// Everything that a report tells about one design.
@@ -113,17 +114,20 @@ pub(super) fn write_figures<'f>(
     directory: &Path,
     formats: &[Format],
 ) -> Result<(Vec<PathBuf>, Vec<InlineFigure>), ReportError> {
-    let (mut written, mut inline) = (Vec::new(), Vec::new());
-    for figure in figures {
-        let drawn = Drawn::new(figure)?;
-        written.extend(write_drawn(figure, &drawn, directory, formats)?);
-        inline.push(InlineFigure {
+    let write = |figure: &&dyn Figure| {
+        let drawn = Drawn::new(*figure)?;
+        let written = write_drawn(*figure, &drawn, directory, formats)?;
+        let inline = InlineFigure {
             png: drawn.png,
             caption: figure.caption(),
             is_wide: figure.size().width > COLUMN,
-        });
-    }
-    Ok((written, inline))
+        };
+        Ok((written, inline))
+    };
+    let figures: Vec<&dyn Figure> = figures.collect();
+    let done: Result<Vec<_>, ReportError> = figures.par_iter().map(write).collect();
+    let (written, inline): (Vec<Vec<PathBuf>>, Vec<InlineFigure>) = done?.into_iter().unzip();
+    Ok((written.concat(), inline))
 }
 
 /// Writes all figures with their tables, the further files, `result.json`, `study.toml`, `report.html` and, if there
