@@ -17,7 +17,7 @@ use super::structure;
 use crate::design::JointKind;
 use crate::manifold::Intolerance;
 use crate::objective::{DesignSpace, HybridObjective};
-use crate::report::{self, Report, Sensitivity, with_error, write_report};
+use crate::report::{self, Report, Sensitivity, write_report};
 use crate::workspace::hybrid::{Atlas, Rule};
 use crate::workspace::{ArtificialLimits, Estimate, LockedJointEstimate, WorkspaceSizes};
 use serde_json::{Value, json};
@@ -332,14 +332,8 @@ impl Run<'_> {
 
 /// What the check says about the number that it checks.
 fn check_notes(check: &LockedJointEstimate, sizes: &WorkspaceSizes) -> Vec<String> {
-    let (own, reported) = (check.fault_tolerant_share(), locked_check::share(sizes));
-    let said = format!(
-        "Inverse kinematics with locked joints, an independent way, finds S_F / S_0max = {} % on {} \
-         reachable task points: {:.1} standard errors of the difference away.",
-        with_error(100.0 * own.value, 100.0 * own.error),
-        check.reachable,
-        locked_check::distance(check, &reported).abs()
-    );
+    let reported = locked_check::share(sizes);
+    let said = locked_check::sentence(check, &reported);
     let contradiction = locked_check::contradiction(check, &reported);
     [said].into_iter().chain(contradiction).collect()
 }

@@ -2,6 +2,7 @@
 
 use super::settings::Study;
 use crate::design::Robot;
+use crate::report::with_error;
 use crate::synthesis::{Purpose, sample_seed};
 use crate::workspace::{
     ArtificialLimits, Estimate, FailureSet, LockedJointCheck, LockedJointEstimate, WorkspaceSizes,
@@ -52,9 +53,21 @@ pub(super) fn share(sizes: &WorkspaceSizes) -> Estimate {
 }
 
 /// How far the check is above the share that it checks, in standard errors of the difference.
-pub(super) fn distance(check: &LockedJointEstimate, reported: &Estimate) -> f64 {
+fn distance(check: &LockedJointEstimate, reported: &Estimate) -> f64 {
     let share = check.fault_tolerant_share();
     (share.value - reported.value) / share.error.hypot(reported.error)
+}
+
+/// What the check says, as a sentence.
+pub(super) fn sentence(check: &LockedJointEstimate, reported: &Estimate) -> String {
+    let share = check.fault_tolerant_share();
+    format!(
+        "Inverse kinematics with locked joints, an independent way, finds S_F / S_0max = {} % on {} \
+         reachable task points: {:.1} standard errors of the difference away.",
+        with_error(100.0 * share.value, 100.0 * share.error),
+        check.reachable,
+        distance(check, reported).abs()
+    )
 }
 
 /// What a reader must not miss if the two disagree.

@@ -50,13 +50,7 @@ impl SynthesisFinding<'_> {
             sentences.push(self.compared(merit, winner, reference));
         }
         if let Some(check) = &winner.check {
-            sentences.push(format!(
-                "Inverse kinematics with locked joints, an independent way, finds S_F / S_0max = {} \
-                 on {} reachable task points: {:.1} standard errors of the difference away.",
-                percent(&check.fault_tolerant_share()),
-                check.reachable,
-                locked_check::distance(check, &winner.measures.share).abs()
-            ));
+            sentences.push(locked_check::sentence(check, &winner.measures.share));
         }
         sentences
     }
